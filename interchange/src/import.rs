@@ -3,11 +3,12 @@
 use crate::{
     account::Account,
     assembly::{
+        fitting::{pins, translating::translating},
         free_bodies, home, idle,
         layout::{self, Layout},
         misfit,
         network::Network,
-        simple, undriven,
+        parasitic, simple, undriven,
     },
     bounds,
     experiment::{self, Experiment},
@@ -157,8 +158,10 @@ pub(crate) fn model(files: &Files, path: &Path, options: &Options) -> Option<(Mo
     let (mut model, format) = read(files, file, options)?;
     bounds::check(files, &model)?;
     choose(files, &mut model, options)?;
-    simple::drop_closures_on_one_body(&mut model);
+    simple::drop_closures_on_one_body(files, &mut model);
+    files.is_clean().then_some(())?;
     free_bodies::check(files, &model)?;
+    let tolerance = options.closure_tolerance.unwrap_or(misfit::TOLERANCE);
     if !model.closures.is_empty() && options.home.is_empty() {
         home::choose(&mut model);
     }
@@ -166,11 +169,13 @@ pub(crate) fn model(files: &Files, path: &Path, options: &Options) -> Option<(Mo
         simple::join_balls(&mut model);
     }
     if !model.closures.is_empty() {
-        let tolerance = options.closure_tolerance.unwrap_or(misfit::TOLERANCE);
+        pins::join_points(&mut model, tolerance);
         model = misfit::fitted(files, model, tolerance)?;
+        pins::planar(&mut model);
     }
     if !model.closures.is_empty() {
         model = idle::without_idle_pins(&Network::new(files, &model)?).unwrap_or(model);
+        model = translating(&model, tolerance).unwrap_or(model);
     }
     no_balls_in_trees(files, &model)?;
     unsupported::leave_out(files, format, &mut model);
@@ -189,6 +194,15 @@ impl<'m> Robot<'m> {
     pub(crate) fn new(files: &Files, model: &'m Model, options: &Options) -> Option<Self> {
         let mut network = Network::new(files, model)?;
         undriven::check(files, &network)?;
+        let platform = parasitic::find(&network).filter(|_| options.coordinates.is_none());
+        if let Some(platform) = platform.filter(|_| !layout::exists(&mut network)) {
+            let plan = Plan::on_platform(files, &network, &platform)?;
+            return Some(Self {
+                network,
+                layout: Layout::default(),
+                plan,
+            });
+        }
         let layout = layout::find(files, &mut network, options)?;
         let plan = Plan::new(files, &network, &layout)?;
         Some(Self {

@@ -17,7 +17,7 @@ pub struct Options {
     pub values: Vec<(String, f64)>,
     /// Start positions for the search of a closed home configuration, rad or m.
     pub home: Vec<(String, f64)>,
-    /// Whether MJCF files may include files outside their own folder.
+    /// Whether includes and meshes of MJCF files may be outside their folder.
     pub include_outside: bool,
     /// Largest misfit of a closure, in rad and as a fraction of the loops' size; by default 2e-3.
     pub closure_tolerance: Option<f64>,

@@ -176,7 +176,7 @@ fn tables_that_say_no_robot_are_told_at_their_line() {
         (
             "NF = 2",
             "NF = 3",
-            "2: 2 links, 2 joints and 3 frames do not match",
+            "4: the table has NF = 3 frames; NL = 2 links and NJ = 2 joints have 2",
         ),
         ("NL = 2", "NL = 2.5", "2: `NL` is not an integer"),
         (

@@ -10,6 +10,7 @@ and 0 with a message without an engine.
 """
 
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -27,6 +28,8 @@ from description import Description
 TOLERANCE = 1e-8
 # Largest displacements from home, rad and m, and errors after which a smaller one is tried.
 SIZES = (0.08, 0.02, 0.005, 0.001)
+# Largest displacement of the motors of a platform with parasitic motion, rad or m.
+PLATFORM_SIZE = 0.05
 NEARER = ("out of reach", "singular")
 
 
@@ -88,6 +91,22 @@ def sample(overact, toml, folder, size, order=None, count=5):
     return sheet, values, result
 
 
+def compare_platform(overact, file, description, toml, folder):
+    """Figures of a platform with parasitic motion, and deviations: 0 of positions, and of torques."""
+    from parasitic import states
+
+    sheet = json.loads(run(overact, "inspect", toml, "--json", "--effort", "none"))
+    parameters = folder / "parameters.toml"
+    values = without_dry_friction(toml, folder)
+    lines = [f"{name} = {values.get(name, 0.0)!r}" for name in sheet["parameters"]]
+    parameters.write_text("[parameters]\n" + "\n".join(lines) + "\n")
+    plate = re.search(r"^# `([^`]*)` is the platform", Path(toml).read_text(), re.M)[1]
+    drawn = states(file, plate, description["platform"]["independent"], PLATFORM_SIZE)
+    torques = np.array(evaluate(overact, toml, "inverse_dynamics", [state for state, _ in drawn], "--parameters", parameters))
+    expected = np.array([torques for _, torques in drawn])
+    return sheet, 0.0, np.abs(torques - expected).max() / np.abs(expected).max()
+
+
 def compare(overact, file, folder, options=(), with_size=False):
     """Description's figures, largest deviations of positions and torques, and misfit of the import.
 
@@ -97,6 +116,9 @@ def compare(overact, file, folder, options=(), with_size=False):
     imported = json.loads(run(overact, "--json", "import", file, *options, "-o", toml))
     misfit = sum(max(own["length"], own["angle"]) for own in imported["misfits"])
     description = Description(toml)
+    if "platform" in description.toml:
+        found = (*compare_platform(overact, file, description.toml, toml, folder), misfit)
+        return (*found, PLATFORM_SIZE) if with_size else found
     # Robots with a small workspace, or a home near a singular pose, are compared nearer to home.
     for size in SIZES:
         try:
@@ -105,11 +127,15 @@ def compare(overact, file, folder, options=(), with_size=False):
         except RuntimeError as error:
             if not any(reason in str(error) for reason in NEARER) or size == SIZES[-1]:
                 raise
+    home = np.array(sheet["home_joints"])
     if Path(file).suffix == ".urdf":
         from pinocchio_engine import Engine
+
+        engine = Engine(file, description, home)
     else:
         from mujoco_engine import Engine
-    engine = Engine(file, description, np.array(sheet["home_joints"]))
+
+        engine = Engine(file, description, home, misfit)
     worst_position, worst_torque = 0.0, 0.0
     for q, rates, accelerations, motions, torques in states:
         bodies = description.motion(q, rates, accelerations)

@@ -52,7 +52,7 @@ pub(super) struct Choices {
     /// Joint positions at the start of the search for a closed configuration, rad or m
     #[arg(long, value_delimiter = ',', value_name = "JOINT=POSITION", value_parser = position)]
     home: Vec<(String, f64)>,
-    /// Also read included MJCF files outside the folder of the file
+    /// Also read MJCF includes and meshes outside the folder of the file
     #[arg(long)]
     include_outside: bool,
     /// Largest misfit of a closure, in rad and as a fraction of the loops' size [default: 0.002]

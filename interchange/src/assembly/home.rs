@@ -11,6 +11,8 @@ use nalgebra::{DMatrix, DVector};
 const AT_LIMIT: f64 = 1e-3;
 /// Largest residual of a start, m or rad; rounded numbers leave one.
 const OPEN: f64 = 5e-3;
+/// Largest displacement of a joint that closes a loop which rounded numbers leave open, rad or m.
+const FAR: f64 = 0.1;
 /// Number of random starts within the limits.
 const STARTS: usize = 20;
 /// Displacements from a singular configuration, rad or m.
@@ -98,8 +100,13 @@ fn random() -> impl FnMut() -> f64 {
 }
 
 /// Closed configuration near a start, also if rounded numbers leave the loops slightly open.
+///
+/// Such loops may close exactly only far from there.
 fn closed(motion: &Motion<'_>, start: &State) -> Option<State> {
+    let gaps = motion.gaps(start);
+    let is_nearly_closed = gaps.iter().all(|gap| gap.abs() < OPEN);
     match motion.closed(start) {
+        Ok(state) if is_nearly_closed && distance(start, &state) > FAR => Some(start.clone()),
         Ok(state) => Some(state),
         Err(open) => (open.gap < OPEN).then_some(open.state),
     }

@@ -30,7 +30,7 @@ pub(crate) enum LayoutPiece {
 }
 
 /// Skeleton, branches and chains.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Layout {
     /// Tree on the ground.
     pub(crate) skeleton: Tree,
@@ -67,12 +67,30 @@ pub(crate) fn find(files: &Files, network: &mut Network<'_>, options: &Options) 
         None => None,
         Some(names) => Some(wanted(files, network, names)?),
     };
+    match search_all(network, wanted) {
+        Ok(found) => Some(found),
+        Err(failure) => {
+            unsolved::report(files, network, &failure, options.coordinates.is_some());
+            None
+        }
+    }
+}
+
+/// Whether there are a skeleton and chains.
+pub(crate) fn exists(network: &mut Network<'_>) -> bool {
+    let found = search_all(network, None).is_ok();
+    network.remove_platform();
+    found
+}
+
+/// Searches with the wanted edges as coordinates, or with each kind of coordinates in turn.
+fn search_all(network: &mut Network<'_>, wanted: Option<Vec<usize>>) -> Result<Layout, Failure> {
     let is_free = wanted.is_none() && !network.model.closures.is_empty();
     if is_free && let Ok(found) = search(network, Some(driven(network))) {
-        return Some(found);
+        return Ok(found);
     }
     let failure = match search(network, wanted) {
-        Ok(found) => return Some(found),
+        Ok(found) => return Ok(found),
         Err(failure) => failure,
     };
     let candidates = if is_free {
@@ -84,12 +102,11 @@ pub(crate) fn find(files: &Files, network: &mut Network<'_>, options: &Options) 
         network.add_platform(platform);
         let edge = network.edges.len() - 1;
         match search(network, Some(vec![edge])) {
-            Ok(found) => return Some(found),
+            Ok(found) => return Ok(found),
             Err(_) => network.remove_platform(),
         }
     }
-    unsolved::report(files, network, &failure, options.coordinates.is_some());
-    None
+    Err(failure)
 }
 
 /// Edges of motors that do not follow other joints.

@@ -1,14 +1,15 @@
 //! Closes loops that a file's rounded numbers leave open by a small misfit.
 //!
 //! Nearly parallel axes of a loop are made parallel if the loop cannot move otherwise. Frames of
-//! closures are then shifted by the remaining misfit. Both changes are at most the tolerance, and
-//! each is reported.
+//! closures are then shifted by the remaining misfit. If loops still cannot move, dimensions are
+//! changed as little as possible so that they do. All changes are at most the tolerance, and each
+//! is reported.
 
 use super::{
-    blocks::Blocks,
+    fitting::{dimensions::size, redundant},
     motion::{Motion, State, gaps_of},
     nearest::nearest,
-    network::{Network, edges, edges_at, grouped},
+    network::Network,
     parallel::parallel_axes,
 };
 use crate::{
@@ -26,23 +27,28 @@ const ROUNDING: f64 = 1e-9;
 pub(crate) fn fitted(files: &Files, model: Model, tolerance: f64) -> Option<Model> {
     let as_given = closable(&model, tolerance);
     let straight = parallel_axes(&model, tolerance);
-    let straightened = straight.and_then(|model| {
-        let adjusted = closable(&model, tolerance).ok()?;
-        Some(adjusted.unwrap_or(model))
+    let straightened = straight.as_ref().and_then(|model| {
+        let adjusted = closable(model, tolerance).ok()?;
+        Some(adjusted.unwrap_or_else(|| model.clone()))
     });
-    match (as_given, straightened) {
+    let closed = match (as_given, straightened) {
         (Ok(adjusted), Some(straight)) => {
-            let own = adjusted.unwrap_or(model);
+            let own = adjusted.unwrap_or_else(|| model.clone());
             let is_better = motions(&straight) > motions(&own);
-            Some(if is_better { straight } else { own })
+            if is_better { straight } else { own }
         }
-        (Ok(adjusted), None) => Some(adjusted.unwrap_or(model)),
-        (Err(_), Some(straight)) => Some(straight),
+        (Ok(adjusted), None) => adjusted.unwrap_or_else(|| model.clone()),
+        (Err(_), Some(straight)) => straight,
         (Err(worst), None) => {
             refuse(files, &model, &worst, tolerance);
-            None
+            return None;
         }
-    }
+    };
+    // Closed exactly, redundant loops may be in a configuration far away, in which they don't move.
+    let starts = straight.as_ref().into_iter().chain([&model, &closed]);
+    let fitted = starts.filter_map(|own| redundant::consistent(own, tolerance, None));
+    let moving = { fitted }.find(|moving| motions(moving) > motions(&closed));
+    Some(moving.unwrap_or(closed))
 }
 
 /// Whether the loops move finitely, the number of independent motions, and the number of
@@ -137,41 +143,6 @@ fn shifted(model: &Model, state: &State) -> Model {
         }
     }
     model
-}
-
-/// Largest extent of the joints and closures of all loops, m.
-fn size(model: &Model, state: &State) -> f64 {
-    let of_body = grouped(model);
-    let edges = edges(model, &of_body);
-    let count = of_body.iter().copied().max().unwrap_or(0) + 1;
-    let ends: Vec<[usize; 2]> = edges.iter().map(|edge| edge.groups).collect();
-    let blocks = Blocks::new(&edges_at(count, &edges), &ends);
-    let carried = model.carried();
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
-    for (at, edge) in edges.iter().enumerate() {
-        if blocks.is_bridge[at] {
-            continue;
-        }
-        let point = match edge.origin {
-            super::network::Origin::Platform => continue,
-            super::network::Origin::Joint(joint) => {
-                state.poses[carried[joint]] * model.joints[joint].at
-            }
-            super::network::Origin::Closure(closure) => match &model.closures[closure].kind {
-                ClosureKind::Point { bodies, at } => state.poses[bodies[0]] * at[0],
-                ClosureKind::Weld { bodies, at } | ClosureKind::Pin { bodies, at } => {
-                    (state.poses[bodies[0]] * at[0]).translation.vector.into()
-                }
-            },
-        };
-        for axis in 0..3 {
-            low[axis] = low[axis].min(point[axis]);
-            high[axis] = high[axis].max(point[axis]);
-        }
-    }
-    let squares = low.iter().zip(high).map(|(low, high)| (high - low).powi(2));
-    squares.sum::<f64>().sqrt().max(1e-9)
 }
 
 fn refuse(files: &Files, model: &Model, worst: &Worst, tolerance: f64) {

@@ -1,6 +1,7 @@
 //! Derives a skeleton and chains from bodies and closures.
 
 pub(crate) mod blocks;
+pub(crate) mod fitting;
 pub(crate) mod free_bodies;
 pub(crate) mod home;
 pub(crate) mod idle;
@@ -12,6 +13,7 @@ mod names;
 mod nearest;
 pub(crate) mod network;
 mod parallel;
+pub(crate) mod parasitic;
 pub(crate) mod platform;
 mod platform_search;
 pub(crate) mod simple;

@@ -161,10 +161,23 @@ impl<'m> Motion<'m> {
             .collect()
     }
 
+    /// Closure residuals, m and rad.
+    pub(crate) fn gaps(&self, state: &State) -> Vec<f64> {
+        let mut gaps = Vec::new();
+        for closure in &self.model.closures {
+            let (points, turn) = ends(&closure.kind, state);
+            gaps.extend((points[1] - points[0]).iter());
+            if let Some((gap, axes)) = turn {
+                gaps.extend(axes.iter().map(|e| gap.dot(e)));
+            }
+        }
+        gaps
+    }
+
     /// Closure residuals (m, rad) and their Jacobian by coordinates.
     pub(crate) fn closure(&self, state: &State) -> (Vec<f64>, DMatrix<f64>) {
         let twists = self.twists(state);
-        let (mut gaps, mut rows) = (Vec::new(), Vec::new());
+        let mut rows = Vec::new();
         for closure in &self.model.closures {
             let [a, b] = closure.bodies();
             let relative = &*twists[b] - &*twists[a];
@@ -172,18 +185,16 @@ impl<'m> Motion<'m> {
             let point = points[1].coords;
             for axis in 0..3 {
                 let e = Vector3::ith(axis, 1.0);
-                gaps.push((points[1] - points[0])[axis]);
                 // Velocity of the point: velocity at the origin plus ω × p.
                 rows.push(along(&relative, &e, &point.cross(&e)));
             }
-            let Some((gap, axes)) = turn else { continue };
+            let Some((_, axes)) = turn else { continue };
             for e in axes {
-                gaps.push(gap.dot(&e));
                 rows.push(along(&relative, &Vector3::zeros(), &e));
             }
         }
         let matrix = DMatrix::from_fn(rows.len(), self.coordinates.len(), |i, j| rows[i][j]);
-        (gaps, matrix)
+        (self.gaps(state), matrix)
     }
 
     /// Configuration after a step of the coordinates.
@@ -380,7 +391,7 @@ pub(crate) fn gaps_of(kind: &ClosureKind, state: &State) -> (f64, f64) {
 }
 
 /// Rotation vector, also accurate for small angles.
-fn scaled_axis(rotation: &Rotation3<f64>) -> Vector3<f64> {
+pub(crate) fn scaled_axis(rotation: &Rotation3<f64>) -> Vector3<f64> {
     let m = rotation.matrix();
     let sine = Vector3::new(
         m[(2, 1)] - m[(1, 2)],

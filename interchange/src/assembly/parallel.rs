@@ -7,6 +7,7 @@ use super::{
 };
 use crate::model::{ClosureKind, JointType, Misfit, Model, Pose};
 use nalgebra::{Rotation3, Vector3};
+use std::collections::BTreeMap;
 
 /// Angle below which axes are parallel up to rounding errors, rad.
 const EXACT: f64 = 1e-12;
@@ -32,8 +33,8 @@ enum AxisOf {
 /// `None` if no axis changes. Slides within the tolerance of perpendicular to the axes of their
 /// loop become perpendicular.
 pub(super) fn parallel_axes(model: &Model, tolerance: f64) -> Option<Model> {
-    let axes = loop_axes(model);
-    let targets = targets(&axes, tolerance);
+    let LoopAxes { axes, points } = loop_axes(model);
+    let targets = targets(&axes, &points, tolerance);
     let tilts: Vec<f64> = axes
         .iter()
         .zip(&targets)
@@ -91,8 +92,13 @@ fn along(frame: &Pose, z: &Vector3<f64>) -> Pose {
     Pose::from_parts(frame.translation, Rotation3::from_matrix_unchecked(axes))
 }
 
-/// Axes of all joints and pins that belong to a loop.
-fn loop_axes(model: &Model) -> Vec<LoopAxis> {
+/// Axes of all joints and pins that belong to a loop, and the number of points in each block.
+struct LoopAxes {
+    axes: Vec<LoopAxis>,
+    points: BTreeMap<usize, usize>,
+}
+
+fn loop_axes(model: &Model) -> LoopAxes {
     let poses = Motion::new(model).start().poses;
     let of_body = grouped(model);
     let edges = edges(model, &of_body);
@@ -101,10 +107,14 @@ fn loop_axes(model: &Model) -> Vec<LoopAxis> {
     let blocks = Blocks::new(&edges_at(count, &edges), &ends);
     let carried = model.carried();
     let mut all = Vec::new();
+    let mut points = BTreeMap::new();
     for (at, edge) in edges.iter().enumerate() {
         let Some(block) = blocks.of_edge(edge.groups) else {
             continue;
         };
+        if edge.kind == JointType::Ball {
+            *points.entry(block).or_default() += 1;
+        }
         if blocks.is_bridge[at] || edge.kind == JointType::Ball {
             continue;
         }
@@ -132,11 +142,15 @@ fn loop_axes(model: &Model) -> Vec<LoopAxis> {
             }
         }
     }
-    all
+    LoopAxes { axes: all, points }
 }
 
-/// New direction of each axis.
-fn targets(axes: &[LoopAxis], tolerance: f64) -> Vec<Vector3<f64>> {
+/// New direction of each axis, given the number of points in each block.
+fn targets(
+    axes: &[LoopAxis],
+    points: &BTreeMap<usize, usize>,
+    tolerance: f64,
+) -> Vec<Vector3<f64>> {
     let mut clusters: Vec<Vec<usize>> = Vec::new();
     for (at, own) in axes.iter().enumerate() {
         let near = clusters.iter_mut().find(|cluster| {
@@ -158,8 +172,11 @@ fn targets(axes: &[LoopAxis], tolerance: f64) -> Vec<Vector3<f64>> {
     }
     for cluster in &clusters {
         let normal = targets[cluster[0]];
-        let turning = cluster.iter().filter(|&&at| !axes[at].is_prismatic);
-        if turning.count() < 2 {
+        // In a plane a point turns like a hinge.
+        let turning = { cluster.iter() }.filter(|&&at| !axes[at].is_prismatic);
+        let points = points.get(&axes[cluster[0]].block).copied().unwrap_or(0);
+        let turning = turning.count();
+        if turning == 0 || turning + points < 2 {
             continue;
         }
         for (at, own) in axes.iter().enumerate() {

@@ -36,8 +36,9 @@ fn platform(network: &Network<'_>, group: usize) -> Option<Platform> {
     }
     let rotations = span(&turning);
     let translations = span(&moving);
-    let is_plain = [0, 1, 3].contains(&rotations.len()) && translations.len() > 1;
-    (is_plain && rotations.len() + translations.len() == count).then_some(Platform {
+    let all = rotations.len() + translations.len();
+    let is_plain = [0, 1, 3].contains(&rotations.len()) && all > 0;
+    (is_plain && all == count).then_some(Platform {
         group,
         translations,
         rotations,

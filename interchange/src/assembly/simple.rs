@@ -3,8 +3,11 @@
 //! Three passive revolute joints with intersecting axes and massless bodies between them are a ball
 //! joint. Two revolute joints on one axis are one.
 
+use super::motion::{Motion, gaps_of};
+use crate::account::Use;
+use crate::files::Files;
 use crate::geometry::exact;
-use crate::model::{ClosureKind, Inertia, Joint, JointType, Model};
+use crate::model::{Closure, ClosureKind, Inertia, Joint, JointType, Model};
 use nalgebra::Matrix3;
 
 /// Merges successive revolute joints with intersecting axes into ball joints.
@@ -139,8 +142,13 @@ fn common(a: &str, b: &str) -> String {
     }
 }
 
-/// Drops closures between bodies that are already fixed together.
-pub(crate) fn drop_closures_on_one_body(model: &mut Model) {
+/// Largest gap of a closure between bodies that are fixed together, m or rad.
+const ON_ONE_BODY: f64 = 1e-3;
+
+/// Drops closures between bodies that are already fixed together, and reports them.
+///
+/// One whose points or frames differ can't close, and is an error.
+pub(crate) fn drop_closures_on_one_body(files: &Files, model: &mut Model) {
     let fixed = |body: usize| {
         let mut at = body;
         while at != 0 && model.bodies[at].joint.is_none() {
@@ -148,20 +156,32 @@ pub(crate) fn drop_closures_on_one_body(model: &mut Model) {
         }
         at
     };
-    let mut notes = Vec::new();
-    let kept = model.closures.iter().filter(|closure| {
+    let state = Motion::new(model).start();
+    let is_between = |closure: &&Closure| {
         let [a, b] = closure.bodies().map(fixed);
-        if a == b {
-            notes.push(format!(
-                "`{}` connects a body to itself and is omitted.",
-                closure.name
-            ));
+        if a != b {
+            return true;
         }
-        a != b
-    });
-    let kept: Vec<_> = kept.cloned().collect();
+        let (length, angle) = gaps_of(&closure.kind, &state);
+        let (place, name) = (&closure.place, &closure.name);
+        let body = &model.bodies[a].name;
+        if length.max(angle) > ON_ONE_BODY {
+            let message = format!(
+                "`{name}` connects two places of one body, `{body}`, that are {length:.2e} m and {angle:.2e} rad apart"
+            );
+            let help = "a closure connects two bodies that move: correct its bodies, or remove it";
+            files.report(place, message, help);
+        } else {
+            let reason = format!("no effect: it connects `{body}` to itself");
+            files.record(Use::Reported, place, name, None, &reason);
+        }
+        false
+    };
+    let kept: Vec<_> = { model.closures.iter() }
+        .filter(is_between)
+        .cloned()
+        .collect();
     model.closures = kept;
-    model.notes.extend(notes);
 }
 
 /// Whether a closure has the kind that merges two bodies into one.

@@ -4,7 +4,10 @@ use super::{
     names::listed,
     network::{Network, Origin},
 };
-use crate::files::{Files, Place};
+use crate::{
+    files::{Files, Place},
+    model::JointType,
+};
 
 /// The partial layout of a search that determines most bodies.
 #[derive(Debug, Default)]
@@ -82,14 +85,27 @@ pub(super) fn report(files: &Files, network: &Network<'_>, failure: &Failure, wa
             "leave `--coordinates` out, or name as many joints as there are degrees of freedom, each connected to the ground by such joints"
         }
         (false, true) => "name the coordinates: `--coordinates a,b,c`",
+        (false, false) if has_platform_on_balls(network, &open) => {
+            "the platform's directions of motion change with its pose. Import describes such a platform by `independent` coordinates if its legs have no branches and it carries no joint: fix the other joints in the file, or describe the robot by hand as robots/spatial_3rps.toml"
+        }
         (false, false) => {
-            "a chain leads from one known body to another through at most six joints, or three and a ball joint, and all choices of coordinates were tried: fix one of these joints in the file, or remove a closure"
+            "a chain leads from one known body to another through at most six joints, or three and a ball joint, and all choices of coordinates were tried. A link on three rods of unknown positions has no description: fix one of these joints in the file, or remove a closure, and identify the other bodies"
         }
     };
     match open.first().and_then(|&edge| place(network, edge)) {
         Some(place) => files.report(place, message, help),
         None => files.refuse(message, help),
     }
+}
+
+/// Whether three or more legs with ball joints hold one of the bodies that these edges connect.
+fn has_platform_on_balls(network: &Network<'_>, edges: &[usize]) -> bool {
+    let mut groups = { edges.iter() }.flat_map(|&edge| network.edges[edge].groups);
+    groups.any(|group| {
+        let own = network.edges_at[group].iter();
+        let is_ball = |edge: &&usize| network.edges[**edge].kind == JointType::Ball;
+        group != 0 && own.filter(is_ball).count() > 2
+    })
 }
 
 /// Reports loops whose closures leave no motion.

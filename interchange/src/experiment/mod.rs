@@ -71,6 +71,9 @@ pub(crate) fn design(
     layout: &Layout,
     plan: &Plan,
 ) -> Result<Experiment, String> {
+    if plan.platform.is_some() {
+        return Err("its legs block some motions of the platform. Write runs of the independent coordinates, and `overact excite` improves them".to_owned());
+    }
     let coordinates = coordinates(plan);
     if coordinates.len() > MOST {
         return Err(format!("it has more than {MOST} coordinates"));

@@ -71,6 +71,12 @@ fn exported(files: &Files, path: &Path, parameters: &Path, options: &Options) ->
         return None;
     }
     let robot = Robot::new(files, &model, options)?;
+    if robot.plan.platform.is_some() {
+        let message = "parameters of a platform on legs that block some of its motions are not put back into files";
+        let help = "edit the file with them";
+        files.refuse(message, help);
+        return None;
+    }
     // Parameter names do not depend on the virtual experiment.
     let text = robot
         .toml(files, &Err("none is needed".to_owned()), path, options)

@@ -159,6 +159,20 @@ fn body(
     inside(reader, element, own, &Pose::identity(), class, tree);
 }
 
+/// Whether the first joint of the file, in document order, is a free joint.
+pub(super) fn has_free_base(root: &Element) -> bool {
+    fn first(element: &Element) -> Option<&Element> {
+        element.children.iter().find_map(|child| {
+            if ["joint", "freejoint"].contains(&child.name.as_str()) {
+                return Some(child);
+            }
+            let holds_bodies = ["worldbody", "body", "frame"].contains(&child.name.as_str());
+            if holds_bodies { first(child) } else { None }
+        })
+    }
+    first(root).is_some_and(is_free)
+}
+
 /// Whether a joint lets its body move freely.
 fn is_free(joint: &Element) -> bool {
     joint.name == "freejoint" || joint.get("type") == Some("free")

@@ -1,6 +1,6 @@
 //! Expands the includes of a file.
 
-use super::keyframe;
+use super::keyframe::{self, Keyframe};
 use crate::{
     account::MJCF,
     files::Files,
@@ -21,7 +21,7 @@ pub(super) fn whole(
     files: &Files,
     file: usize,
     may_leave: bool,
-) -> Option<(Element, Option<Vec<f64>>)> {
+) -> Option<(Element, Option<Keyframe>)> {
     let mut root = xml::parse(files, file)?;
     let folder = Folder {
         path: files.folder(file),

@@ -1,6 +1,6 @@
 //! Inertias of bodies from `<inertial>` or from geoms, computed as in MuJoCo.
 
-use super::{BOOLEAN, Reader};
+use super::{BOOLEAN, Reader, shell::Shell};
 use crate::{
     account::Use,
     files::Files,
@@ -184,12 +184,12 @@ fn geom(reader: &Reader<'_>, geom: &Element) -> Shape {
             None => Shape::Unknown(format!("there is no mesh `{name}`")),
         };
     }
-    let is_solid = geom.keyword(files, "shellinertia", BOOLEAN) != Some("true");
-    let solid = solid(reader, geom, kind).filter(|_| is_solid && geom.get("mesh").is_none());
-    let Some((volume, unit)) = solid else {
+    let is_shell = geom.keyword(files, "shellinertia", BOOLEAN) == Some("true");
+    let shape = primitive(reader, geom, kind, is_shell).filter(|_| geom.get("mesh").is_none());
+    let Some((size, unit)) = shape else {
         return Shape::Unknown("the inertia of this shape is not computed".to_owned());
     };
-    let mass = mass.unwrap_or(density * volume);
+    let mass = mass.unwrap_or(density * size);
     let frame = match Segment::of_geom(files, geom) {
         Some(segment) => segment.frame(),
         None => {
@@ -200,8 +200,13 @@ fn geom(reader: &Reader<'_>, geom: &Element) -> Shape {
     Shape::Body(about_centre(mass, Matrix3::from_diagonal(&(unit * mass))).transformed(&frame))
 }
 
-/// Volume and principal moments for unit mass of a primitive; `None` for other shapes.
-fn solid(reader: &Reader<'_>, geom: &Element, kind: &str) -> Option<(f64, Vector3<f64>)> {
+/// Volume or area, and principal moments for unit mass, of a primitive; `None` for other shapes.
+fn primitive(
+    reader: &Reader<'_>,
+    geom: &Element,
+    kind: &str,
+    is_shell: bool,
+) -> Option<(f64, Vector3<f64>)> {
     let files: &Files = reader.files;
     let size = geom.list(files, "size").unwrap_or_default();
     let length = Segment::of_geom(files, geom).map(|segment| segment.length());
@@ -214,32 +219,40 @@ fn solid(reader: &Reader<'_>, geom: &Element, kind: &str) -> Option<(f64, Vector
     } else {
         at(1)
     };
-    match kind {
-        "sphere" => Some((
-            4.0 / 3.0 * PI * radius.powi(3),
-            uniform(0.4 * radius * radius),
-        )),
+    let of_shell = |shell: Shell| (shell.area, shell.moments);
+    Some(match kind {
+        "sphere" if is_shell => of_shell(Shell::sphere(radius)),
+        "sphere" => {
+            let volume = 4.0 / 3.0 * PI * radius.powi(3);
+            (volume, uniform(0.4 * radius * radius))
+        }
         "ellipsoid" => {
             let (y, z) = (second?, half_length(2)?);
+            if is_shell {
+                return Some(of_shell(Shell::ellipsoid(radius, y, z)));
+            }
             let moments = moments(radius, y, z) / 5.0;
-            Some((4.0 / 3.0 * PI * radius * y * z, moments))
+            (4.0 / 3.0 * PI * radius * y * z, moments)
         }
         "box" => {
             let (y, z) = (second?, half_length(2)?);
-            Some((8.0 * radius * y * z, moments(radius, y, z) / 3.0))
+            if is_shell {
+                return Some(of_shell(Shell::cuboid(radius, y, z)));
+            }
+            (8.0 * radius * y * z, moments(radius, y, z) / 3.0)
         }
+        "cylinder" if is_shell => of_shell(Shell::cylinder(radius, 2.0 * half_length(1)?)),
         "cylinder" => {
             let height = 2.0 * half_length(1)?;
             let across = (3.0 * radius * radius + height * height) / 12.0;
             let along = 0.5 * radius * radius;
-            Some((
-                PI * radius * radius * height,
-                Vector3::new(across, across, along),
-            ))
+            let volume = PI * radius * radius * height;
+            (volume, Vector3::new(across, across, along))
         }
-        "capsule" => Some(capsule(radius, 2.0 * half_length(1)?)),
-        _ => None,
-    }
+        "capsule" if is_shell => of_shell(Shell::capsule(radius, 2.0 * half_length(1)?)),
+        "capsule" => capsule(radius, 2.0 * half_length(1)?),
+        _ => return None,
+    })
 }
 
 fn uniform(value: f64) -> Vector3<f64> {

@@ -1,38 +1,85 @@
 //! Joint positions of the keyframe.
 
 use crate::{
+    account::Use,
+    files::{Files, Place},
     model::{JointType, Model},
     xml::Element,
 };
 use nalgebra::{Rotation3, Vector3};
 
-/// Positions `qpos` of the keyframe `home`, or of the first one.
-pub(super) fn positions(root: &Element) -> Option<Vec<f64>> {
-    let attribute = |key: &Element, name: &str| {
-        let mut all = key.attributes.iter();
-        let found = all.find(|(own, ..)| own == name);
-        found.map(|(_, value, _)| value.clone())
-    };
-    let sections = root.children.iter().filter(|own| own.name == "keyframe");
-    let keys = sections.flat_map(|section| &section.children);
-    let with_positions = keys.filter_map(|key| Some((key, attribute(key, "qpos")?)));
-    let all: Vec<(&Element, String)> = with_positions.collect();
-    let home = all
-        .iter()
-        .find(|(key, _)| attribute(key, "name").as_deref() == Some("home"));
-    let (_, text) = home.or(all.first())?;
-    let numbers = text.split_whitespace().map(|word| word.parse::<f64>().ok());
-    let numbers: Option<Vec<f64>> = numbers.collect();
-    numbers.filter(|all| all.iter().all(|value| value.is_finite()))
+/// Positions of a keyframe, as in the file.
+#[derive(Debug)]
+pub(super) struct Keyframe {
+    text: String,
+    place: Place,
 }
 
-/// Sets the joints' positions in the keyframe, if it has one number for each coordinate.
-pub(super) fn apply(positions: &[f64], model: &mut Model) {
-    let count = |kind: JointType| if kind == JointType::Ball { 4 } else { 1 };
-    let all: usize = model.joints.iter().map(|joint| count(joint.kind)).sum();
-    if all != positions.len() {
+/// Positions `qpos` of the keyframe `home`, or of the first one.
+pub(super) fn positions(root: &Element) -> Option<Keyframe> {
+    let sections = root.children.iter().filter(|own| own.name == "keyframe");
+    let keys = sections.flat_map(|section| &section.children);
+    let with_positions = keys.filter(|key| attribute(key, "qpos").is_some());
+    let all: Vec<&Element> = with_positions.collect();
+    let is_home = |key: &&&Element| attribute(key, "name").is_some_and(|(name, _)| name == "home");
+    let key = all.iter().find(is_home).or(all.first())?;
+    let (text, place) = attribute(key, "qpos")?;
+    Some(Keyframe {
+        text: text.to_owned(),
+        place: place.clone(),
+    })
+}
+
+/// Attribute of an element that the account does not follow.
+fn attribute<'e>(key: &'e Element, name: &str) -> Option<(&'e str, &'e Place)> {
+    let mut all = key.attributes.iter();
+    let found = all.find(|(own, ..)| own == name);
+    found.map(|(_, value, place)| (value.as_str(), place))
+}
+
+/// Sets the joints' positions in the keyframe; one that does not fit the joints is reported.
+///
+/// `has_fixed_base`: whether a free joint, the first one, is fixed here. Its seven numbers are left
+/// out.
+pub(super) fn apply(files: &Files, keyframe: &Keyframe, has_fixed_base: bool, model: &mut Model) {
+    if model.closures.is_empty() {
         return;
     }
+    let numbers = keyframe.text.split_whitespace();
+    let numbers = numbers.map(|word| word.parse::<f64>().ok().filter(|own| own.is_finite()));
+    let numbers: Option<Vec<f64>> = numbers.collect();
+    let report = |reason: &str| {
+        files.record(Use::Reported, &keyframe.place, "key", Some("qpos"), reason);
+    };
+    let Some(numbers) = numbers else {
+        report("not a list of numbers: home is the configuration of the joints");
+        return;
+    };
+    let all: usize = model.joints.iter().map(|joint| count(joint.kind)).sum();
+    let positions = match numbers.len().checked_sub(all) {
+        Some(0) => &numbers[..],
+        Some(FREE) if has_fixed_base => &numbers[FREE..],
+        _ => {
+            report(&format!(
+                "{} numbers, and the joints have {all} positions: home is the configuration of the joints",
+                numbers.len()
+            ));
+            return;
+        }
+    };
+    set(positions, model);
+}
+
+/// Number of positions of a free joint.
+const FREE: usize = 7;
+
+/// Number of positions of a joint.
+fn count(kind: JointType) -> usize {
+    if kind == JointType::Ball { 4 } else { 1 }
+}
+
+/// Sets one position for each coordinate.
+fn set(positions: &[f64], model: &mut Model) {
     let carried = model.carried();
     let mut rest = positions;
     // Axes and origin in which a free joint's displacement is given.

@@ -5,7 +5,7 @@
 
 use super::{Compiler, Reader, defaults::MAIN};
 use crate::{
-    files::Files,
+    files::{Files, is_beside},
     geometry::exact,
     xml::{Element, numbers},
 };
@@ -43,7 +43,9 @@ enum Kind {
 }
 
 /// Reads the meshes of `<asset>`; their files are relative to the folder of the model.
-pub(super) fn read(reader: &Reader<'_>, root: &Element, folder: &Path) -> Meshes {
+///
+/// Files outside the folder are not read unless the options allow it.
+pub(super) fn read(reader: &Reader<'_>, root: &Element, model: &Path) -> Meshes {
     let mut meshes = Meshes::new();
     let mut bytes_left = MOST_BYTES;
     for asset in root.all("asset") {
@@ -55,14 +57,14 @@ pub(super) fn read(reader: &Reader<'_>, root: &Element, folder: &Path) -> Meshes
             };
             let own = whole.get("name").map(str::to_owned);
             let name = own.or_else(|| whole.get("file").map(stem));
-            let mesh = mesh(reader, &whole, folder, &mut bytes_left);
+            let mesh = mesh(reader, &whole, model, &mut bytes_left);
             meshes.insert(name.unwrap_or_default(), mesh);
         }
     }
     meshes
 }
 
-fn mesh(reader: &Reader<'_>, element: &Element, folder: &Path, bytes_left: &mut u64) -> Mesh {
+fn mesh(reader: &Reader<'_>, element: &Element, model: &Path, bytes_left: &mut u64) -> Mesh {
     let files = reader.files;
     let kinds = ["convex", "exact", "legacy", "shell"];
     let kind = match element.keyword(files, "inertia", &kinds) {
@@ -75,7 +77,17 @@ fn mesh(reader: &Reader<'_>, element: &Element, folder: &Path, bytes_left: &mut 
         return Err("built-in meshes are not computed".to_owned());
     }
     let triangles = match element.get("file") {
-        Some(file) => from_file(&located(&reader.compiler, folder, file), bytes_left)?,
+        Some(file) => {
+            let folder = model.parent().unwrap_or(Path::new(""));
+            let path = located(&reader.compiler, folder, file);
+            if !reader.options.include_outside && !is_beside(model, &path) {
+                return Err(format!(
+                    "its file `{}` is outside the folder of the model and is not read (`--include-outside` allows it)",
+                    path.display()
+                ));
+            }
+            from_file(&path, bytes_left)?
+        }
         None => inline(files, element).ok_or("it has no file, and no faces")?,
     };
     let triangles = transformed(files, element, triangles);

@@ -10,6 +10,7 @@ mod include;
 mod inertia;
 mod keyframe;
 mod mesh;
+mod shell;
 mod tendons;
 #[cfg(test)]
 mod tests;
@@ -41,7 +42,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
         options,
         has_closures: equality::has_closures(&root),
     };
-    reader.meshes = mesh::read(&reader, &root, &files.folder(file));
+    reader.meshes = mesh::read(&reader, &root, &files.path(file));
     let mut has_gravity = true;
     for option in root.all("option") {
         if let Some(gravity) = option.numbers(files, "gravity") {
@@ -69,8 +70,9 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     adjust::inertias(files, &root, &reader.compiler, &mut model);
     compensation.apply(files, &mut model);
     adjust::springs(files, &mut model, &springs);
-    if let Some(positions) = keyframe {
-        keyframe::apply(&positions, &mut model);
+    if let Some(keyframe) = keyframe {
+        let has_fixed_base = options.fix_base && bodies::has_free_base(&root);
+        keyframe::apply(files, &keyframe, has_fixed_base, &mut model);
     }
     files.is_clean().then_some(model)
 }

@@ -70,19 +70,21 @@ struct Frame {
 
 impl Reader<'_> {
     fn robot(&self, model: &mut Model, options: &Options) -> Option<()> {
-        let links = self.count("NL")?;
+        let Some(links) = self.count("NL") else {
+            if self.files.is_clean() {
+                let message = "the table does not say how many links the robot has";
+                let help =
+                    "write NL = …, NJ = … and NF = …: the numbers of links, joints and frames";
+                self.files.report(&self.place("NJ"), message, help);
+            }
+            return None;
+        };
         let joints = self
             .count("NJ")
             .or_else(|| self.files.is_clean().then_some(links))?;
         let usual = joints.saturating_mul(2).saturating_sub(links);
         let frames = self.count("NF").unwrap_or(usual);
-        if links == 0 || joints < links || joints > FRAMES || frames != usual {
-            let message =
-                format!("{links} links, {joints} joints and {frames} frames do not match");
-            let help = "each joint in excess of the links closes a loop and has two frames: NF = 2 NJ - NL";
-            self.files.report(&self.place("NL"), message, help);
-            return None;
-        }
+        self.check_counts(links, joints, frames)?;
         for key in ["is_floating", "is_mobile"] {
             let floats = self
                 .entries
@@ -132,6 +134,39 @@ impl Reader<'_> {
             });
         }
         self.files.is_clean().then_some(())
+    }
+
+    /// Reports numbers of links, joints and frames that do not match; `None` after an error.
+    fn check_counts(&self, links: usize, joints: usize, frames: usize) -> Option<()> {
+        let usual = joints.saturating_mul(2).saturating_sub(links);
+        let (key, message, help) = if links == 0 {
+            let message = "the robot has no links: NL = 0".to_owned();
+            (
+                "NL",
+                message,
+                "NL is the number of links that move".to_owned(),
+            )
+        } else if joints < links {
+            let message =
+                format!("the robot has fewer joints than links: NJ = {joints}, NL = {links}");
+            let help = format!("each link has a joint: NJ is at least {links}");
+            ("NJ", message, help)
+        } else if joints > FRAMES {
+            let message = format!("the robot has {joints} joints, more than {FRAMES}");
+            ("NJ", message, "import the robot in parts".to_owned())
+        } else if frames != usual {
+            let message = format!(
+                "the table has NF = {frames} frames; NL = {links} links and NJ = {joints} joints have {usual}"
+            );
+            let help = format!(
+                "each joint in excess of the links closes a loop and has two frames: NF = 2 NJ - NL = {usual}"
+            );
+            ("NF", message, help)
+        } else {
+            return Some(());
+        };
+        self.files.report(&self.place(key), message, help);
+        None
     }
 
     /// Reports nonzero values beyond the last link, joint or frame.

@@ -12,7 +12,7 @@ use crate::{
         leg::{Framed, Node, any_across},
         step::Step,
     },
-    model::{JointType, Motor, Pose},
+    model::{Inertia, JointType, Motor, Pose},
 };
 use nalgebra::{Point3, Vector3};
 
@@ -351,23 +351,28 @@ impl<'d, 'm> Draft<'d, 'm> {
             let Some(inertia) = inertia else { continue };
             joint.carries = Some((group, framed[at].frame));
             let own = inertia.transformed(&framed[at].frame.inverse());
-            let about = own.about_origin();
-            let first = own.centre.coords * own.mass;
-            let values = [
-                ("xx", about[(0, 0)]),
-                ("xy", about[(0, 1)]),
-                ("xz", about[(0, 2)]),
-                ("yy", about[(1, 1)]),
-                ("yz", about[(1, 2)]),
-                ("zz", about[(2, 2)]),
-                ("mx", first.x),
-                ("my", first.y),
-                ("mz", first.z),
-                ("m", own.mass),
-            ];
+            let values = inertial(&own);
             joint.values.splice(0..0, values);
         }
     }
+}
+
+/// Inertial parameters about the origin of the frame, by symbol.
+pub(super) fn inertial(own: &Inertia) -> [(&'static str, f64); 10] {
+    let about = own.about_origin();
+    let first = own.centre.coords * own.mass;
+    [
+        ("xx", about[(0, 0)]),
+        ("xy", about[(0, 1)]),
+        ("xz", about[(0, 2)]),
+        ("yy", about[(1, 1)]),
+        ("yz", about[(1, 2)]),
+        ("zz", about[(2, 2)]),
+        ("mx", first.x),
+        ("my", first.y),
+        ("mz", first.z),
+        ("m", own.mass),
+    ]
 }
 
 /// A massless body that is rotated by 90° about x.

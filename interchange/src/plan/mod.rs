@@ -3,6 +3,7 @@
 mod joints;
 mod motors;
 mod names;
+mod platform;
 mod screws;
 
 use crate::{
@@ -21,6 +22,7 @@ use nalgebra::{Point3, Vector3};
 use names::Names;
 
 pub(crate) use names::word;
+pub(crate) use platform::PlanPlatform;
 
 /// A leg.
 #[derive(Debug)]
@@ -78,6 +80,7 @@ pub(crate) struct Joint {
 /// End of a chain.
 #[derive(Debug)]
 pub(crate) struct End {
+    /// Name of the body; empty for the platform.
     pub(crate) body: String,
     pub(crate) is_rigid: bool,
     /// Closure point or frame in the body's frame.
@@ -90,6 +93,8 @@ pub(crate) struct Plan {
     pub(crate) legs: Vec<Leg>,
     /// Axes of the skeleton's joints in the world at home, including coupled joints.
     pub(crate) axes: Vec<Vector3<f64>>,
+    /// Platform on which the legs end; `None` if they end on bodies.
+    pub(crate) platform: Option<PlanPlatform>,
     /// Comments for the head of the description.
     pub(crate) notes: Vec<String>,
 }
@@ -117,7 +122,12 @@ impl Plan {
             });
         }
         let notes = notes(network, layout);
-        Some(Self { legs, axes, notes })
+        Some(Self {
+            legs,
+            axes,
+            platform: None,
+            notes,
+        })
     }
 }
 

@@ -18,9 +18,19 @@ pub(super) fn read(files: &Files, file: usize, tree: &mut Tree, model: &mut Mode
     let name = files.name(file);
     let urdf = Path::new(&name);
     let found = ["yaml", "yml"].map(|ending| urdf.with_extension(ending));
-    let Some(path) = found.into_iter().find(|path| path.is_file()) else {
+    // A folder or a pipe of this name is an error: without its loops the robot is another one.
+    let Some(path) = found
+        .into_iter()
+        .find(|path| path.symlink_metadata().is_ok())
+    else {
         return;
     };
+    if !path.is_file() {
+        let message = format!("`{}` is not a regular file", path.display());
+        let help = "users of Pinocchio list the loops and motors of a robot in the YAML file of its name: give that file, or rename this one";
+        files.refuse(message, help);
+        return;
+    }
     let Some(own) = files.read(&path, None) else {
         return;
     };

@@ -2,6 +2,7 @@
 
 mod believable;
 mod experiment;
+mod platform;
 
 use crate::{
     account::Account,
@@ -61,6 +62,9 @@ pub(crate) fn toml(
     let gravity: Vec<String> = model.gravity.iter().map(|g| decimal(*g)).collect();
     let _ = writeln!(text, "gravity = [{}]", gravity.join(", "));
     let mut joints = Vec::new();
+    if let Some(platform) = &plan.platform {
+        platform::toml(&mut text, platform);
+    }
     for leg in &plan.legs {
         shape(&mut text, leg, &mut joints);
     }
@@ -148,7 +152,10 @@ fn shape(text: &mut String, leg: &Leg, joints: &mut Vec<(Span, usize)>) {
     if let Some(end) = &leg.end {
         let _ = writeln!(text, "\n[leg.{}.end]", leg.name);
         let kind = if end.is_rigid { "rigid" } else { "point" };
-        let _ = writeln!(text, "type = \"{kind}\"\nbody = \"{}\"", end.body);
+        let _ = writeln!(text, "type = \"{kind}\"");
+        if !end.body.is_empty() {
+            let _ = writeln!(text, "body = \"{}\"", end.body);
+        }
         for part in placement(&end.at, end.is_rigid) {
             let _ = writeln!(text, "{part}");
         }
@@ -290,6 +297,37 @@ fn place(text: &mut String, leg: &Leg) {
     }
 }
 
+/// Sizes of a body's moments, below which digits are rounding errors.
+struct ParameterSize {
+    first: f64,
+    second: f64,
+}
+
+impl ParameterSize {
+    fn of(values: &believable::Values) -> Self {
+        let largest = |of: &[&str]| {
+            let own = values.iter().filter(|(symbol, _)| of.contains(symbol));
+            own.map(|(_, value)| value.abs()).fold(0.0, f64::max)
+        };
+        let mass = values.iter().find(|(symbol, _)| *symbol == "m");
+        let mass = mass.map_or(1.0, |(_, mass)| *mass);
+        Self {
+            first: largest(&["mx", "my", "mz"]).max(mass * 1e-3),
+            second: largest(&["xx", "xy", "xz", "yy", "yz", "zz"]),
+        }
+    }
+
+    /// A value without digits of rounding errors.
+    fn shown(&self, symbol: &str, value: f64) -> String {
+        let size = match symbol {
+            "mx" | "my" | "mz" => self.first,
+            "xx" | "xy" | "xz" | "yy" | "yz" | "zz" => self.second,
+            _ => value.abs(),
+        };
+        fine(value, size)
+    }
+}
+
 /// Masses, inertias and friction of the file, as values of the virtual robot and as prior.
 fn values(text: &mut String, plan: &Plan, joints: &mut Vec<(Span, usize)>) {
     let single = plan.legs.len() == 1;
@@ -301,34 +339,27 @@ fn values(text: &mut String, plan: &Plan, joints: &mut Vec<(Span, usize)>) {
             } else {
                 format!("_{}", leg.name)
             };
-            if believable::is_impossible(joint) {
+            if believable::is_impossible(&joint.values) {
                 impossible.push(format!("`{}{of}`", joint.name));
             }
-            let mass = joint
-                .values
-                .iter()
-                .find(|(s, _)| *s == "m")
-                .map_or(1.0, |(_, m)| *m);
-            let largest = |of: &[&str]| {
-                let own = joint
-                    .values
-                    .iter()
-                    .filter(|(symbol, _)| of.contains(symbol));
-                own.map(|(_, value)| value.abs()).fold(0.0, f64::max)
-            };
-            let second = largest(&["xx", "xy", "xz", "yy", "yz", "zz"]);
-            let first = largest(&["mx", "my", "mz"]).max(mass * 1e-3);
+            let size = ParameterSize::of(&joint.values);
             for (symbol, value) in &joint.values {
-                let scale = match *symbol {
-                    "mx" | "my" | "mz" => first,
-                    "xx" | "xy" | "xz" | "yy" | "yz" | "zz" => second,
-                    _ => value.abs(),
-                };
-                let shown = fine(*value, scale);
-                let is_prior = believable::is_believable(joint, symbol);
+                let shown = size.shown(symbol, *value);
+                let is_prior = believable::is_believable(&joint.values, symbol);
                 let line = format!("{symbol}_{}{of} = {shown}", joint.name);
                 lines.push((is_prior, line, joint.of));
             }
+        }
+    }
+    if let Some(platform) = &plan.platform {
+        if believable::is_impossible(&platform.values) {
+            impossible.push("`platform`".to_owned());
+        }
+        let size = ParameterSize::of(&platform.values);
+        for (symbol, value) in &platform.values {
+            let is_prior = believable::is_believable(&platform.values, symbol);
+            let line = format!("{symbol}_platform = {}", size.shown(symbol, *value));
+            lines.push((is_prior, line, None));
         }
     }
     let motors = plan.legs.iter().flat_map(|leg| &leg.motors);
