@@ -53,6 +53,7 @@ pub use experiments::excitation::Excitation;
 pub use experiments::experiment::{Experiment, Run, Term, TrueParameter};
 pub use experiments::gears::{GEARS_ALONE, GEARS_OF_COUPLED_MOTORS};
 pub use experiments::gravity::GAINS_AND_GRAVITY;
+pub use experiments::held::HELD_AND_CORRECTIONS;
 pub use experiments::known::{COUPLED_MOTORS, KNOWN_TORQUES};
 pub use experiments::prior::Prior;
 pub use experiments::settings::{Friction, Identification, Instruments, Normalisation, Reversals};

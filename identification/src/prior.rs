@@ -19,4 +19,9 @@ pub struct Prior {
     pub uniform: BTreeMap<String, f64>,
     /// Smallest and largest value by name (SI units), of masses, friction and rotor inertias.
     pub bounds: BTreeMap<String, [f64; 2]>,
+    /// Parameters that are held at these values (SI units), by name.
+    ///
+    /// Their torque is subtracted from the measured one, and they are not estimated.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub held: BTreeMap<String, f64>,
 }

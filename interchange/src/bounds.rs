@@ -117,6 +117,17 @@ pub(crate) fn check(files: &Files, model: &Model) -> Option<()> {
             report(files, Some(&closure.place), message);
         }
     }
+    for spring in &model.springs {
+        let own = [spring.stiffness, spring.damping, spring.rest].into_iter();
+        let points = spring.at.iter().flat_map(|at| at.coords.data.0[0]);
+        if !own.chain(points).all(is_in_bounds) {
+            let message = format!(
+                "the tendon `{}` has a number beyond {LARGEST:e}",
+                spring.name
+            );
+            report(files, Some(&spring.place), message);
+        }
+    }
     if !model.gravity.into_iter().all(is_in_bounds) {
         report(
             files,

@@ -125,7 +125,11 @@ struct Described {
 fn described(files: &Files, path: &Path, options: &Options) -> Option<Described> {
     let (model, _) = model(files, path, options)?;
     let robot = Robot::new(files, &model, options)?;
-    let designed = experiment::design(&robot.network, &robot.layout, &robot.plan);
+    let designed = if robot.plan.motors.is_empty() {
+        experiment::design(&robot.network, &robot.layout, &robot.plan)
+    } else {
+        Err(String::from("its motors turn several joints"))
+    };
     let name = options.name.clone().unwrap_or_else(|| model.name.clone());
     let WrittenDescription { text, joints } = robot.toml(files, &designed, path, options);
     Some(Described {

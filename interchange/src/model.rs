@@ -23,6 +23,8 @@ pub(crate) struct Model {
     pub(crate) says_motors: bool,
     /// Motors with a gear or that turn several joints, as far as the file describes them.
     pub(crate) motors: Vec<Motor>,
+    /// Springs and dampers between two points.
+    pub(crate) springs: Vec<PointSpring>,
     /// Whether the file has settings that change inertias after they are read.
     pub(crate) adjusts_inertias: bool,
     /// Closures and axes that were changed to close the loops.
@@ -100,6 +102,8 @@ pub(crate) struct Joint {
     /// Coupling, if the joint is not independent.
     pub(crate) follow: Option<Follow>,
     pub(crate) actuated: bool,
+    /// Whether it is only actuated by motors that turn several joints of a robot with loops.
+    pub(crate) is_turned: bool,
     /// Whether it only displaces a free body, which closures hold.
     pub(crate) is_virtual: bool,
     pub(crate) damping: f64,
@@ -112,6 +116,10 @@ pub(crate) struct Joint {
     pub(crate) timed_spring: Option<[f64; 2]>,
     /// Spring stiffness and rest position.
     pub(crate) spring: Option<(f64, f64)>,
+    /// Part of the stiffness that tendons contribute.
+    pub(crate) tendon_stiffness: f64,
+    /// Position at which springs of tendons have their length without force, if it is not home.
+    pub(crate) rest: Option<f64>,
     /// Description of the transmission, for comments.
     pub(crate) drive: String,
     pub(crate) place: Place,
@@ -129,6 +137,19 @@ pub(crate) struct Motor {
     pub(crate) armature: f64,
     pub(crate) damping: f64,
     pub(crate) friction: f64,
+    pub(crate) place: Place,
+}
+
+/// A spring and damper between points of two bodies.
+#[derive(Debug, Clone)]
+pub(crate) struct PointSpring {
+    pub(crate) name: String,
+    pub(crate) bodies: [usize; 2],
+    pub(crate) at: [Point3<f64>; 2],
+    pub(crate) stiffness: f64,
+    pub(crate) damping: f64,
+    /// Length without force.
+    pub(crate) rest: f64,
     pub(crate) place: Place,
 }
 
@@ -198,6 +219,7 @@ impl Model {
             closures: Vec::new(),
             says_motors: false,
             motors: Vec::new(),
+            springs: Vec::new(),
             adjusts_inertias: false,
             misfits: Vec::new(),
             notes: Vec::new(),
@@ -207,6 +229,15 @@ impl Model {
     /// Joint with a name.
     pub(crate) fn joint_named(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)
+    }
+
+    /// Combinations of joints that the actuators of a robot with loops turn.
+    pub(crate) fn drives(&self) -> Vec<Vec<(usize, f64)>> {
+        let joints = self.joints.iter().enumerate();
+        let own = joints.filter(|(_, joint)| joint.actuated && !joint.is_turned);
+        let own = own.map(|(at, _)| vec![(at, 1.0)]);
+        let motors = self.motors.iter().map(|motor| motor.turns.clone());
+        own.chain(motors).collect()
     }
 
     /// Body with a name.
@@ -247,6 +278,9 @@ impl Model {
                 | ClosureKind::Weld { bodies, .. }
                 | ClosureKind::Pin { bodies, .. } => bodies.iter_mut().for_each(moved),
             }
+        }
+        for spring in &mut self.springs {
+            spring.bodies.iter_mut().for_each(moved);
         }
         self.bodies.insert(at, body);
     }
@@ -302,6 +336,7 @@ impl Joint {
             speed: None,
             follow: None,
             actuated: false,
+            is_turned: false,
             is_virtual: false,
             damping: 0.0,
             friction: 0.0,
@@ -309,6 +344,8 @@ impl Joint {
             given: None,
             timed_spring: None,
             spring: None,
+            tendon_stiffness: 0.0,
+            rest: None,
             drive: String::new(),
             place,
         }
@@ -316,6 +353,18 @@ impl Joint {
 }
 
 impl Joint {
+    /// Adds a spring; two springs of a joint act like one.
+    pub(crate) fn add_spring(&mut self, stiffness: f64, rest: f64) {
+        let (own, at) = self.spring.unwrap_or((0.0, rest));
+        let sum = own + stiffness;
+        if sum == 0.0 {
+            // Opposite springs leave a constant torque, which no spring has.
+            self.spring = Some((own, at));
+            return;
+        }
+        self.spring = Some((sum, (own * at + stiffness * rest) / sum));
+    }
+
     /// Part of a torque parameter that actuators and tendons of the file contribute.
     pub(crate) fn of_others(&self, symbol: &str) -> f64 {
         let Some([armature, damping, friction]) = self.given else {
@@ -325,6 +374,7 @@ impl Joint {
             "ia" => self.armature - armature,
             "fv" => self.damping - damping - self.timed_spring.map_or(0.0, |[_, damping]| damping),
             "fs" => self.friction - friction,
+            "k" => self.tendon_stiffness,
             _ => 0.0,
         }
     }

@@ -53,9 +53,9 @@ fn lead_by(model: &mut Model, new: usize, follow: Follow) {
 
 /// Expresses motors by independent joints, and keeps them only if one turns several joints.
 ///
-/// A motor of a single joint becomes part of the joint. If others are kept, every driven joint has
-/// a motor. With `is_chosen` the user has named the driven joints, and no motor is kept. Reports
-/// motors of several joints in robots with loops.
+/// A motor of a single joint becomes part of the joint. If others are kept in a robot without
+/// loops, every driven joint has a motor. In a robot with loops only motors of several joints are
+/// kept. With `is_chosen` the user has named the driven joints, and no motor is kept.
 pub(crate) fn resolve(files: &Files, model: &mut Model, is_chosen: bool) {
     let mut motors = std::mem::take(&mut model.motors);
     for motor in &mut motors {
@@ -74,13 +74,17 @@ pub(crate) fn resolve(files: &Files, model: &mut Model, is_chosen: bool) {
         }
         return;
     }
-    let Some(first) = coupled.next() else {
+    if coupled.next().is_none() {
         return;
-    };
+    }
     if !model.closures.is_empty() {
-        let message = "a motor that turns several joints is not supported in a robot with loops";
-        let help = "remove it and name the driven joints, `--actuated JOINT,JOINT`";
-        files.report(&first.place, message, help);
+        motors.retain(|motor| motor.turns.len() > 1);
+        for joint in motors.iter().flat_map(joints_of) {
+            let own = &mut model.joints[joint];
+            own.is_turned = !own.actuated;
+            own.actuated = true;
+        }
+        model.motors = motors;
         return;
     }
     // Of several actuators of one joint, such as for position and velocity, one is kept.

@@ -15,9 +15,8 @@ enum Torque {
     Spring,
 }
 
-/// Removes all torques of ball joints, and springs of robots with loops.
+/// Removes all torques of ball joints.
 pub(crate) fn leave_out(files: &Files, format: Format, model: &mut Model) {
-    let has_loops = !model.closures.is_empty();
     for joint in &mut model.joints {
         if joint.kind == JointType::Ball {
             let reason = "LEFT OUT: torques of ball joints are not supported";
@@ -25,10 +24,6 @@ pub(crate) fn leave_out(files: &Files, format: Format, model: &mut Model) {
                 report(files, format, joint, torque, reason);
             }
             (joint.damping, joint.friction, joint.armature) = (0.0, 0.0, 0.0);
-            joint.spring = None;
-        } else if has_loops && joint.spring.is_some() {
-            let reason = "LEFT OUT: springs are not supported in robots with loops";
-            report(files, format, joint, Torque::Spring, reason);
             joint.spring = None;
         }
     }

@@ -230,24 +230,29 @@ fn elements_of_sdformat_that_are_not_used_are_reported() {
 }
 
 #[test]
-fn springs_that_loops_leave_out_are_reported_at_their_joint() {
+fn springs_of_loops_are_honoured() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models/ankle.xml");
     let text = std::fs::read_to_string(path).expect("an ankle");
     let joint = "<joint name=\"pitch\"";
     assert!(text.contains(joint));
-    let text = text.replace(joint, &format!("{joint} stiffness=\"3\""));
+    let text = text.replace(joint, &format!("{joint} stiffness=\"3\" springref=\"10\""));
     let found = imported(&[("ankle.xml", &text)]);
-    let line = text.lines().position(|line| line.contains(joint));
-    let line = line.expect("a line") + 1;
-    assert_eq!(
-        reported(&found.account),
-        [format!("{line}: joint stiffness ×1")]
+    assert!(reported(&found.account).is_empty());
+    assert!(
+        found.text.contains("spring = \"q - (10 deg)\""),
+        "{}",
+        found.text
+    );
+    assert!(
+        found.text.contains("k_pitch_skeleton = 3"),
+        "{}",
+        found.text
     );
     let honoured = &found.account.honoured;
     assert!(
         honoured
             .iter()
-            .all(|entry| entry.subject() != "joint stiffness")
+            .any(|entry| entry.subject() == "joint stiffness")
     );
 }
 

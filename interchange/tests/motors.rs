@@ -297,18 +297,21 @@ fn a_driven_joint_leads_the_joints_that_it_is_coupled_to() {
 }
 
 #[test]
-fn motors_of_several_joints_are_refused_in_robots_with_loops() {
+fn motors_of_several_joints_are_kept_in_robots_with_loops() {
     let more = "<equality><connect body1='b3' anchor='0.2 0 0'/></equality>".to_owned()
         + &tendon("")
-        + "<actuator><motor tendon='t'/></actuator>";
+        + "<actuator><motor name='belt' tendon='t' armature='0.2'/></actuator>";
     let text = hinges(&more).replacen("<body pos", "<body name='b1' pos", 1);
     let at = text.rfind("<body pos").expect("a body");
     let text = format!("{}<body name='b3' {}", &text[..at], &text[at + 6..]);
-    let said = refused("row.xml", &text);
+    let found = imported("row.xml", &text);
     assert!(
-        said.contains("turns several joints is not supported in a robot with loops"),
-        "{said}"
+        found.text.contains("[motor.belt]\nturns = \""),
+        "{}",
+        found.text
     );
+    assert!(found.text.contains("ia_belt = 0.2"), "{}", found.text);
+    assert!(!found.text.contains("actuated = true"), "{}", found.text);
 }
 
 #[test]

@@ -123,6 +123,17 @@ class Description:
         every = [(leg, joint) for leg in self.legs for joint in self.toml["leg"][leg]["joint"] if joint.get("actuated")]
         return [self.in_file.get((leg, joint["name"]), joint["name"]) for leg, joint in every]
 
+    def drives(self):
+        """Combinations of joints of the file that the actuators turn, as factors by name, in order."""
+        drives = [{name: 1.0} for name in self.actuated()]
+        for motor in self.toml.get("motor", {}).values():
+            terms = {}
+            for sign, factor, leg, joint in re.findall(r"([-+]?) *(?:([\d.e-]+)(?: [a-z/]+)? \* )?(\w+)\.q_(\w+)", motor["turns"]):
+                name = self.in_file.get((leg, joint), joint)
+                terms[name] = float(factor or 1) * (-1 if sign == "-" else 1)
+            drives.append(terms)
+        return drives
+
     def motion(self, q, rates, accelerations):
         """Motions of all bodies by leg and joint."""
         own = {key: (q[i], rates[i], accelerations[i]) for i, key in enumerate(self.joints())}

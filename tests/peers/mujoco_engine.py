@@ -13,17 +13,18 @@ class Engine:
         self.model.dof_frictionloss[:] = 0
         # Forces that descriptions leave out, as import reports.
         self.model.opt.density = self.model.opt.viscosity = 0
-        self.model.tendon_stiffness[:] = self.model.tendon_damping[:] = 0
-        if "end" in (key for leg in description.legs for key in description.toml["leg"][leg]):
-            self.model.jnt_stiffness[:] = 0
         # Ball joints of descriptions have no torques, as import reports.
         for dof in range(self.model.nv):
             if self.model.jnt_type[self.model.dof_jntid[dof]] == mujoco.mjtJoint.mjJNT_BALL:
                 self.model.dof_damping[dof] = self.model.dof_armature[dof] = 0
+                self.model.jnt_stiffness[self.model.dof_jntid[dof]] = 0
         # Descriptions scale gravity by a compensation of all weights; import reports others.
         self.model.body_gravcomp[:] = 0
         self.model.opt.gravity[:] = description.toml["gravity"]
         self.followers = followers_of(self.model)
+        # MuJoCo leaves out the inertia that a tendon couples between branches of the tree.
+        self.rotors = fixed_tendons(self.model), self.model.tendon_armature.copy()
+        self.model.tendon_armature[:] = 0
         self.data = mujoco.MjData(self.model)
         self.description = description
         self.carried = description.carried()
@@ -225,14 +226,27 @@ class Engine:
         data = self.data
         data.qpos[:], data.qvel[:], data.qacc[:] = q, v, a
         mujoco.mj_inverse(self.model, data)
-        return data.qfrc_inverse.copy()
+        lengths, armature = self.rotors
+        return data.qfrc_inverse + lengths.T @ (armature * (lengths @ a))
 
     def on_motors(self, torques, sheet):
         force = np.zeros(self.model.nv)
-        for name, torque in zip(self.description.actuated(), torques):
-            joint = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_JOINT, name)
-            force[self.model.jnt_dofadr[joint]] = torque
+        for terms, torque in zip(self.description.drives(), torques, strict=True):
+            for name, factor in terms.items():
+                joint = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_JOINT, name)
+                force[self.model.jnt_dofadr[joint]] += factor * torque
         return force
+
+
+def fixed_tendons(model):
+    """Derivatives of the lengths of fixed tendons by the coordinates; zero for other tendons."""
+    lengths = np.zeros((model.ntendon, model.nv))
+    for tendon in range(model.ntendon):
+        first = model.tendon_adr[tendon]
+        for at in range(first, first + model.tendon_num[tendon]):
+            if model.wrap_type[at] == mujoco.mjtWrap.mjWRAP_JOINT:
+                lengths[tendon, model.jnt_dofadr[model.wrap_objid[at]]] += model.wrap_prm[at]
+    return lengths
 
 
 def followers_of(model):

@@ -7,6 +7,7 @@ pub(crate) mod excitation;
 pub(crate) mod experiment;
 pub(crate) mod gears;
 pub(crate) mod gravity;
+pub(crate) mod held;
 pub(crate) mod known;
 pub(crate) mod payloads;
 pub(crate) mod per_actuator;

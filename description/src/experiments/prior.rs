@@ -2,6 +2,7 @@
 
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::experiments::experiment::{TrueParameter, parameters};
+use crate::experiments::held::{self, HeldName};
 use crate::robot::inventory::Inventory;
 use crate::toml_text::reader::Item;
 use overact_core::StandardParameter;
@@ -13,26 +14,41 @@ pub struct Prior {
     pub values: Vec<(String, f64)>,
     /// Smallest and largest value by name, SI units.
     pub bounds: Vec<(String, [f64; 2])>,
+    /// Parameters that are held at their values, by name, SI units.
+    pub held: Vec<(String, f64)>,
 }
 
 /// Reads `[prior]`.
 pub(crate) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Prior> {
     let table = item.table("the table `[prior]`")?;
-    let values = table.get("values").map(|item| values(&item, robot));
+    let held = table.get("held");
+    let names = held.as_ref().map(|item| held::names(item, robot));
+    let names = names.unwrap_or_default();
+    let values = table
+        .get("values")
+        .map(|item| values(&item, robot, &names))
+        .unwrap_or_default();
     let bounds = table.get("bounds").map(|item| bounds(&item, robot));
     table.finish();
+    let held = held.map(|item| held::values(&item, &names, &values));
     let named = |one: TrueParameter| (one.name.value, one.value);
     Some(Prior {
-        values: values.unwrap_or_default().into_iter().map(named).collect(),
+        values: values.into_iter().map(named).collect(),
         bounds: bounds.unwrap_or_default(),
+        held: held.unwrap_or_default(),
     })
 }
 
 /// Reads `[prior.values]`; parameters that cannot be negative are checked.
-fn values(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<TrueParameter> {
+///
+/// Those of `held` bodies may be zero.
+fn values(item: &Item<'_, '_>, robot: &Inventory<'_>, held: &[HeldName]) -> Vec<TrueParameter> {
     use StandardParameter as P;
     let all = parameters(item, robot);
     for one in &all {
+        if one.value == 0.0 && held.iter().any(|own| own.parameter == one.name.value) {
+            continue;
+        }
         let words = match one.symbol {
             P::M => "a body's mass",
             P::Xx | P::Yy | P::Zz => "a body's moment of inertia",

@@ -116,7 +116,7 @@ impl Bodies<'_> {
     }
 
     /// All bodies with their names; the first spelling of a body is the one of `inspect`.
-    fn names(&self) -> Vec<(String, FrameBody)> {
+    pub(crate) fn names(&self) -> Vec<(String, FrameBody)> {
         let mut all = Vec::new();
         if self.has_platform {
             all.push((PLATFORM.to_owned(), FrameBody::Platform));

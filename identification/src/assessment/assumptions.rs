@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     kinematics::conditioning::couples,
+    prior::Prior,
     regression::{columns::ColumnSet, projection::ModelKind},
     settings::CheckScope,
 };
@@ -36,6 +37,7 @@ pub(crate) fn assumptions(
     models: &[ModelKind],
     before: PreviouslyIdentified,
     sessions: usize,
+    prior: &Prior,
 ) -> Vec<String> {
     let gains = if before.gains {
         "known parameters are exact: gains and all other parameters scale with them"
@@ -64,6 +66,14 @@ pub(crate) fn assumptions(
             }
         }),
     ];
+    if !prior.held.is_empty() {
+        let names: Vec<&str> = prior.held.keys().map(String::as_str).collect();
+        all.push(format!(
+            "{} parameters are held at their prior values ({}): their errors are part of the residual and of all estimates, but of no interval",
+            names.len(),
+            shortened(&names)
+        ));
+    }
     if lengths_are_untold(model) {
         all.push(String::from(
             "each length of the loops is right: with as many drives as degrees of freedom the closures do not test them",
@@ -86,6 +96,15 @@ pub(crate) fn assumptions(
         ));
     }
     all
+}
+
+/// Names of at most six parameters; the rest is counted.
+fn shortened(names: &[&str]) -> String {
+    const MOST: usize = 6;
+    match names.len().checked_sub(MOST) {
+        None | Some(0) => names.join(", "),
+        Some(more) => format!("{} and {more} more", names[..MOST].join(", ")),
+    }
 }
 
 /// What basic checks leave untested, as an assumption.

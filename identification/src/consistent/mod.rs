@@ -28,6 +28,7 @@ mod unknowns;
 mod values;
 
 use nalgebra::{DMatrix, DVector};
+use overact::Info;
 use serde::Serialize;
 
 use self::{
@@ -109,6 +110,32 @@ pub struct ConsistentBody {
     ///
     /// Positive for a body, at most 0.25.
     pub definiteness: f64,
+}
+
+impl Consistent {
+    /// Adds the held parameters of the prior, which no data affect.
+    pub(crate) fn with_held(mut self, info: &Info<'_>, prior: &Prior) -> Self {
+        for one in info.parameters {
+            if let Some(&value) = prior.held.get(one.name) {
+                self.parameters.push(ConsistentParameter {
+                    name: one.name.to_owned(),
+                    unit: one.unit.to_owned(),
+                    value,
+                    prior: value,
+                    determined: 0.0,
+                });
+            }
+        }
+        let place = |one: &ConsistentParameter| {
+            let mut all = info.parameters.iter();
+            all.position(|own| own.name == one.name)
+                .unwrap_or(usize::MAX)
+        };
+        if !prior.held.is_empty() {
+            self.parameters.sort_by_key(place);
+        }
+        self
+    }
 }
 
 /// Search for a consistent estimate of a system.

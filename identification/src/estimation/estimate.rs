@@ -163,11 +163,21 @@ pub(crate) fn line_errors(system: &System, selected: &[usize], values: &[f64]) -
         .lines
         .iter()
         .zip(system.line_names.iter().zip(&system.line_units))
-        .map(|(line, (name, unit))| {
-            let norms = LineNorms {
-                residual: line.residual_norm(selected, values),
-                measured: line.measured_norm(),
-                variation: line.measured_variation(),
+        .enumerate()
+        .map(|(number, (line, (name, unit)))| {
+            let residual = line.residual_norm(selected, values);
+            let norms = match system.totals.get(number) {
+                Some(total) => LineNorms::of_sums(
+                    residual * residual,
+                    total.squares,
+                    total.sum,
+                    line.equations(),
+                ),
+                None => LineNorms {
+                    residual,
+                    measured: line.measured_norm(),
+                    variation: line.measured_variation(),
+                },
             };
             LineError::new(name, unit, &norms, line.equations())
         })

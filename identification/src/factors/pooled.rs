@@ -159,6 +159,7 @@ impl PoolGroup {
             phase_sums: Vec::new(),
             partition: None,
             instruments: Vec::new(),
+            totals: Vec::new(),
         }
     }
 

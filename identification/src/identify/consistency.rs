@@ -1,5 +1,6 @@
 //! Physically consistent estimates of all projections.
 
+use overact::Info;
 use rayon::prelude::*;
 
 use super::prepare::PreparedSystem;
@@ -14,6 +15,7 @@ use crate::{
 
 /// Consistent estimate of each projection, with its number, and models without one.
 pub(super) fn consistent_all(
+    info: &Info<'_>,
     prepared: &PreparedSystem,
     estimates: &[(usize, Estimate)],
     prior: &Prior,
@@ -23,6 +25,7 @@ pub(super) fn consistent_all(
         .filter(|(_, one)| one.stage == Stage::Base);
     let of_projection = |(number, estimate): &(usize, Estimate)| {
         let found = prepared.consistent(*number, estimate, prior);
+        let found = found.map(|own| own.with_held(info, prior));
         found.map(|found| (*number, found)).ok_or(estimate.model)
     };
     let sought: Vec<_> = base.map(of_projection).collect();

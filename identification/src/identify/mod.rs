@@ -120,7 +120,7 @@ pub fn identify_after(
     let outcomes = estimate_all(&prepared, settings, dataset.true_values, progress);
     let (errors_in_regressor, alternatives) = regressor_errors(&outcomes);
     let estimates = estimates(outcomes, &projections, &mut warnings)?;
-    let (consistent, inconsistent) = consistent_all(&prepared, &estimates, &settings.prior);
+    let (consistent, inconsistent) = consistent_all(&info, &prepared, &estimates, &settings.prior);
     warnings.extend(
         consistent
             .iter()
@@ -213,7 +213,14 @@ pub fn identify_after(
         warnings,
         assumptions: [
             not_tested(settings.checks),
-            assumptions(model, &prepared.columns, &models, found, sessions),
+            assumptions(
+                model,
+                &prepared.columns,
+                &models,
+                found,
+                sessions,
+                &settings.prior,
+            ),
         ]
         .concat(),
         unseen,

@@ -236,7 +236,8 @@ pub fn prepare(
         settings.asymmetric_friction,
         settings.seed,
     )?
-    .with_payloads(&payload_names(runs));
+    .with_payloads(&payload_names(runs))
+    .holding(&settings.prior);
     Error::check(settings.prior.problems(&columns.named()))?;
     let base = base_parameters(model, &columns, payload, settings.seed)?;
     // Column relations belong to the model, reversals to the data.

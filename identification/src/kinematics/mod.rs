@@ -79,7 +79,7 @@ impl<'a> Motions<'a> {
             log,
             stream: Stream::new(log, settings)?,
             forward: Forward::new(model, log),
-            known: KnownTorques::new(model),
+            known: KnownTorques::new(model, &settings.prior),
             gears: Gears::new(settings),
             kept: settings.skip_start..log.samples() - settings.skip_end,
             is_watched: true,
@@ -124,6 +124,7 @@ impl<'a> Motions<'a> {
             acceleration: Vec::new(),
             velocities: Vec::new(),
             torques: Vec::new(),
+            subtracted: Vec::new(),
             closure_residual: 0.0,
         }
     }

@@ -29,6 +29,11 @@ pub struct Motion {
     pub velocities: Vec<f64>,
     /// Unfiltered torques without known ones, samples × n (N, N m).
     pub torques: Vec<f64>,
+    /// Known torques and those of held parameters, samples × n (N, N m); empty without held
+    /// parameters.
+    ///
+    /// The sum with `torques` is the measured torque, to which relative residuals then refer.
+    pub subtracted: Vec<f64>,
     /// Largest difference between filtered actuator positions and those of the pose (m, rad).
     ///
     /// Zero without redundancy; otherwise it shows errors of geometry and encoder offsets.
@@ -67,6 +72,7 @@ impl Motion {
         self.acceleration.extend(next.acceleration);
         self.velocities.extend(next.velocities);
         self.torques.extend(next.torques);
+        self.subtracted.extend(next.subtracted);
         self.closure_residual = self.closure_residual.max(next.closure_residual);
     }
 }

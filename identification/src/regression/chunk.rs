@@ -10,6 +10,8 @@ use crate::{
 /// Evaluated samples: for each projection and line, samples × (columns + 1), Y last.
 pub(crate) struct Chunk {
     pub(crate) lines: Vec<Vec<Vec<f64>>>,
+    /// For each projection and line, what was subtracted from Y; empty without held parameters.
+    pub(crate) subtracted: Vec<Vec<Vec<f64>>>,
     /// For each projection, the conditions of its kept actuators.
     pub(crate) conditions: Vec<Vec<Condition>>,
 }

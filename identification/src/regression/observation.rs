@@ -131,6 +131,9 @@ impl Observer<'_> {
                         let before = (first + place) * BLOCK * n;
                         let velocities = velocities.skip(before + line).step_by(n);
                         let rows = &chunk.lines[projection][line];
+                        if let Some(lines) = chunk.subtracted.get(projection) {
+                            sink.subtracted(&lines[line]);
+                        }
                         sink.push(&plan, rows, instruments, velocities);
                     }
                 });
@@ -180,7 +183,11 @@ impl Observer<'_> {
         let sink = |number: usize| {
             let limit = limits.get(number % lines).copied();
             let stream = |width| decimator.stream(width, samples);
-            LineSink::new(plan, stream, parameters, instruments, limit)
+            let sink = LineSink::new(plan, stream, parameters, instruments, limit)?;
+            if self.settings.prior.held.is_empty() {
+                return Ok(sink);
+            }
+            Ok(sink.with_total(stream(1)?))
         };
         (0..lines * self.projections.len()).map(sink).collect()
     }
@@ -254,6 +261,7 @@ impl Observer<'_> {
             .map_err(at)?;
         let mut chunk = Chunk {
             lines: Vec::new(),
+            subtracted: Vec::new(),
             conditions: Vec::new(),
         };
         let mut singular = Vec::new();
@@ -280,10 +288,18 @@ impl Observer<'_> {
             places.for_each(|(_, more)| more.clone_from(&platform));
             *own = platform;
         }
+        if !motion.subtracted.is_empty() {
+            let width = self.base.len() + 1;
+            let lines = chunk.lines.iter_mut();
+            let own = lines.map(|lines| lines.iter_mut().map(|rows| split_last(rows, width)));
+            chunk.subtracted = own.map(Iterator::collect).collect();
+        }
         Ok((chunk, singular))
     }
 
     /// Rows of Γ¹ of `count` samples from number `first` of the motion on, line by line.
+    ///
+    /// What was subtracted from Y is a last column, if parameters are held.
     fn platform_rows(
         &self,
         motion: &Motion,
@@ -296,22 +312,44 @@ impl Observer<'_> {
             Error::from(motion.outside(first + error.sample, error.error))
         };
         let states = SampledStates::of_motion(motion, first, count);
-        let torques = slice(&motion.torques, n, first, count).to_vec();
-        let torques = actuator_forces(self.model, torques);
+        let both = [&motion.torques, &motion.subtracted].into_iter();
+        let both: Vec<&Vec<f64>> = both.filter(|own| !own.is_empty()).collect();
         let mut platform = self
             .columns
-            .evaluate(self.model, &states, self.base, 1)
+            .evaluate(self.model, &states, self.base, both.len())
             .map_err(at)?;
-        let width = self.base.len() + 1;
-        let mut y = vec![0.0; count * r];
-        self.model
-            .evaluate(Function::ProjectPlatform, &[states.pose, &torques], &mut y)
-            .map_err(at)?;
-        for (line, rows) in platform.iter_mut().enumerate() {
-            let measured = y[line..].iter().step_by(r);
-            let last = rows[width - 1..].iter_mut().step_by(width);
-            last.zip(measured).for_each(|(to, from)| *to = *from);
+        let width = self.base.len() + both.len();
+        for (number, torques) in both.into_iter().enumerate() {
+            let torques = slice(torques, n, first, count).to_vec();
+            let torques = actuator_forces(self.model, torques);
+            let mut y = vec![0.0; count * r];
+            self.model
+                .evaluate(Function::ProjectPlatform, &[states.pose, &torques], &mut y)
+                .map_err(at)?;
+            let place = self.base.len() + number;
+            for (line, rows) in platform.iter_mut().enumerate() {
+                let measured = y[line..].iter().step_by(r);
+                let own = rows[place..].iter_mut().step_by(width);
+                own.zip(measured).for_each(|(to, from)| *to = *from);
+            }
         }
         Ok(platform)
     }
+}
+
+/// Removes the last column of rows of `width` + 1 values, and returns it.
+fn split_last(rows: &mut Vec<f64>, width: usize) -> Vec<f64> {
+    let last = rows
+        .iter()
+        .skip(width)
+        .step_by(width + 1)
+        .copied()
+        .collect();
+    let samples = rows.len() / (width + 1);
+    for sample in 1..samples {
+        let from = sample * (width + 1);
+        rows.copy_within(from..from + width, sample * width);
+    }
+    rows.truncate(samples * width);
+    last
 }

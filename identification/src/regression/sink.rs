@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{
     factor::Factor,
     phase_sums::{PhaseSums, Phases},
-    system::{PartitionCondition, RunEquations, RunPart, Stretch},
+    system::{MeasuredSums, PartitionCondition, RunEquations, RunPart, Stretch},
     transpose::transpose,
 };
 use crate::{filters::Decimation, series::LARGEST_SERIES};
@@ -113,6 +113,16 @@ pub(crate) struct LineSink {
     phase_sums: Option<PhaseSums>,
     points: Vec<f64>,
     standstill: Option<Standstill>,
+    total: Option<TotalSink>,
+}
+
+/// Sums of the complete measurement, of which Y is the part without the held parameters.
+#[derive(Debug)]
+struct TotalSink {
+    decimation: Decimation,
+    /// Decimated values of the subtracted part that belong to the next equations.
+    subtracted: Vec<f64>,
+    sums: MeasuredSums,
 }
 
 /// Exclusion of equations at standstill of the line's joint.
@@ -208,7 +218,25 @@ impl LineSink {
             phase_sums: plan.phases.map(|phases| PhaseSums::new(phases, width)),
             points: Vec::new(),
             standstill,
+            total: None,
         })
+    }
+
+    /// Also sums the complete measurement; `decimation` is for a single column.
+    pub(crate) fn with_total(self, decimation: Decimation) -> Self {
+        let total = Some(TotalSink {
+            decimation,
+            subtracted: Vec::new(),
+            sums: MeasuredSums::default(),
+        });
+        Self { total, ..self }
+    }
+
+    /// Takes what was subtracted from the measurement in the rows that are pushed next.
+    pub(crate) fn subtracted(&mut self, values: &[f64]) {
+        if let Some(total) = &mut self.total {
+            total.decimation.push(values, &mut total.subtracted);
+        }
     }
 
     /// Number of equations excluded at standstill, if exclusion is on.
@@ -242,10 +270,18 @@ impl LineSink {
             let velocities: Vec<f64> = velocities.take(rows.len() / width).collect();
             own.decimation.push(&velocities, &mut speeds);
         }
+        let subtracted = self
+            .total
+            .as_mut()
+            .map(|own| std::mem::take(&mut own.subtracted));
         for (place, row) in kept.chunks_exact(width).enumerate() {
             if self.stands_still(speeds.get(place)) {
                 self.leave_out(plan, row);
                 continue;
+            }
+            let part = subtracted.as_ref().and_then(|own| own.get(place));
+            if let (Some(total), Some(part)) = (&mut self.total, part) {
+                total.sums.add(row[width - 1] + part);
             }
             if let Some(sink) = &mut self.instruments {
                 let own = decimated_instruments.get(place * width..(place + 1) * width - 1);
@@ -351,6 +387,10 @@ pub(crate) fn observed(
             .filter_map(|sink| sink.phase_sums.clone())
             .collect(),
         partition,
+        totals: sinks
+            .iter()
+            .filter_map(|sink| sink.total.as_ref().map(|own| own.sums))
+            .collect(),
         points: sinks
             .iter()
             .map(|sink| transpose(&sink.points, width))

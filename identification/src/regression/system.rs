@@ -80,6 +80,25 @@ pub struct System {
     pub partition: Option<PartitionCondition>,
     /// R factor of columns, instruments and Y of each line; empty without instruments.
     pub instruments: Vec<Factor>,
+    /// Sums of the complete measurement of each line; empty without held parameters.
+    pub(crate) totals: Vec<MeasuredSums>,
+}
+
+/// Sums of the measurement of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct MeasuredSums {
+    /// Of its squares.
+    pub(crate) squares: f64,
+    /// Of itself.
+    pub(crate) sum: f64,
+}
+
+impl MeasuredSums {
+    /// Adds a value.
+    pub(crate) fn add(&mut self, value: f64) {
+        self.squares += value * value;
+        self.sum += value;
+    }
 }
 
 /// Equations of a part of a run.
@@ -119,6 +138,7 @@ impl System {
             phase_sums: Vec::new(),
             partition: None,
             instruments: Vec::new(),
+            totals: Vec::new(),
         }
     }
 
@@ -144,6 +164,12 @@ impl System {
         }
         let lines = self.instruments.iter_mut().zip(&observed.instruments);
         lines.for_each(|(line, factor)| line.add(factor));
+        self.totals
+            .resize(observed.totals.len(), MeasuredSums::default());
+        for (own, more) in self.totals.iter_mut().zip(&observed.totals) {
+            own.squares += more.squares;
+            own.sum += more.sum;
+        }
         self.parts.extend(observed.parts);
         self.stretches.extend(observed.stretches);
         if !observed.phase_sums.is_empty() {
@@ -164,6 +190,8 @@ pub(crate) struct RunEquations {
     pub(crate) partition: Option<PartitionCondition>,
     /// As in the system.
     pub(crate) instruments: Vec<Factor>,
+    /// As in the system.
+    pub(crate) totals: Vec<MeasuredSums>,
     /// Equations at the plotted points, line by line: points × (columns + 1).
     pub(crate) points: Vec<DMatrix<f64>>,
 }

@@ -88,17 +88,20 @@ pub(crate) struct Candidate<'a> {
 
 impl Candidate<'_> {
     /// Predicts the lines of Γ for a sample, and writes measured and predicted values to a row.
+    ///
+    /// Each equation comes with what was subtracted from its measurement.
     fn predict<'e>(
         &self,
-        equations: impl Iterator<Item = &'e [f64]>,
+        equations: impl Iterator<Item = (&'e [f64], f64)>,
         place: impl Fn(usize) -> Pair,
         row: &mut [f64],
     ) -> Vec<f64> {
         let mut all = Vec::new();
-        for (line, equation) in equations.enumerate() {
+        for (line, (equation, subtracted)) in equations.enumerate() {
             let terms = self.selected.iter().zip(self.values);
-            let predicted = terms.map(|(&column, value)| equation[column] * value).sum();
-            row[place(line).measured] = equation[equation.len() - 1];
+            let own: f64 = terms.map(|(&column, value)| equation[column] * value).sum();
+            let predicted = own + subtracted;
+            row[place(line).measured] = equation[equation.len() - 1] + subtracted;
             row[place(line).predicted] = predicted;
             all.push(predicted);
         }
@@ -295,7 +298,14 @@ impl PredictionRows<'_> {
         } else {
             None
         };
-        let torques = slice(&motion.torques, n, first, count);
+        let mut torques = slice(&motion.torques, n, first, count).to_vec();
+        if !motion.subtracted.is_empty() {
+            let own = slice(&motion.subtracted, n, first, count);
+            torques
+                .iter_mut()
+                .zip(own)
+                .for_each(|(all, own)| *all += own);
+        }
         let mut rows = vec![0.0; count * layout.width()];
         for (sample, row) in rows.chunks_exact_mut(layout.width()).enumerate() {
             let jacobian = slice(&jacobians, n * r, sample, 1);
@@ -306,7 +316,7 @@ impl PredictionRows<'_> {
                 };
                 return Err(motion.outside(first + sample, error).into());
             };
-            let measured = slice(torques, n, sample, 1);
+            let measured = slice(&torques, n, sample, 1);
             row[layout.measured()].copy_from_slice(measured);
             if let Some(range) = layout.projected() {
                 let gamma = transposed_product(jacobian, measured, r);
@@ -317,8 +327,12 @@ impl PredictionRows<'_> {
                     continue;
                 }
                 let projection = &observer.projections[candidate.projection];
-                let lines = chunk.lines[candidate.projection].iter();
-                let equations = lines.map(|rows| slice(rows, observer.base.len() + 1, sample, 1));
+                let lines = chunk.lines[candidate.projection].iter().enumerate();
+                let subtracted = chunk.subtracted.get(candidate.projection);
+                let equations = lines.map(|(line, rows)| {
+                    let own = subtracted.map_or(0.0, |lines| lines[line][sample]);
+                    (slice(rows, observer.base.len() + 1, sample, 1), own)
+                });
                 let predicted = candidate.predict(equations, |line| layout.line(number, line), row);
                 let place = &mut row[layout.predicted_torques(number)];
                 if *projection == Projection::Joints {

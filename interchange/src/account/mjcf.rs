@@ -44,12 +44,12 @@ const MESH: &[(&str, Treatment)] = &[
 
 const TENDON: &[(&str, Treatment)] = &[
     (
-        "name class stiffness damping frictionloss armature",
+        "name class stiffness damping frictionloss armature springlength",
         Honoured,
     ),
     (
-        "springlength springyield",
-        Irrelevant("acts with stiffness, which is rejected"),
+        "springyield",
+        unless("0", "the softness of the spring is missing from the model"),
     ),
     (
         "actuatorfrclimited actuatorfrcrange limited margin range solimpfriction solimplimit \
@@ -254,9 +254,18 @@ const RULES: &[Rule] = &[
     },
     Rule {
         within: "spatial",
-        elements: "site geom pulley",
-        treatment: Irrelevant("path of a tendon, which is rejected if it exerts forces"),
-        attributes: &[],
+        elements: "site",
+        treatment: Honoured,
+        attributes: &[("site", Honoured)],
+    },
+    Rule {
+        within: "spatial",
+        elements: "geom pulley",
+        treatment: Honoured,
+        attributes: &[(
+            "geom sidesite divisor",
+            Irrelevant("a tendon with such a path is rejected if it exerts forces"),
+        )],
     },
     Rule {
         within: "fixed",

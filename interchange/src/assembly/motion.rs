@@ -70,6 +70,20 @@ impl<'m> Motion<'m> {
         Self { model, coordinates }
     }
 
+    /// Poses of the bodies where springs of tendons have their length without force.
+    ///
+    /// Joints have these positions independently of couplings.
+    pub(crate) fn at_rest(&self) -> Vec<Pose> {
+        let joints = self.model.joints.iter();
+        let mut state = State {
+            positions: joints.map(|own| own.rest.unwrap_or(own.home)).collect(),
+            turns: vec![Rotation3::identity(); self.model.joints.len()],
+            poses: Vec::new(),
+        };
+        self.place_bodies(&mut state);
+        state.poses
+    }
+
     /// Home configuration of the file.
     pub(crate) fn start(&self) -> State {
         let positions = self.model.joints.iter().map(|joint| joint.home).collect();
@@ -91,6 +105,11 @@ impl<'m> Motion<'m> {
                 state.positions[at] = follow.factor * state.positions[follow.joint] + follow.offset;
             }
         }
+        self.place_bodies(state);
+    }
+
+    /// The same without couplings.
+    fn place_bodies(&self, state: &mut State) {
         let mut poses: Vec<Pose> = Vec::with_capacity(self.model.bodies.len());
         poses.push(Pose::identity());
         for body in &self.model.bodies[1..] {

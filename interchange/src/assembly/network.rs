@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     files::Files,
-    model::{ClosureKind, Inertia, JointType, Model, Pose},
+    model::{ClosureKind, Inertia, JointType, Model, PointSpring, Pose},
 };
 use nalgebra::{DMatrix, DVector, Point3, Vector3};
 use std::collections::BTreeMap;
@@ -182,7 +182,16 @@ impl<'m> Network<'m> {
                     continue;
                 };
                 // Each rod is found from both ends.
-                if start < last {
+                let holds = |own: &PointSpring| {
+                    let on = |&body: &usize| {
+                        groups
+                            .iter()
+                            .any(|&at| self.groups[at].bodies.contains(&body))
+                    };
+                    own.bodies.iter().any(on)
+                };
+                // A spring may resist the spin.
+                if start < last && !self.model.springs.iter().any(holds) {
                     for group in groups {
                         self.groups[group].spins = true;
                         self.groups[group].rod_ends = Some([start, last]);

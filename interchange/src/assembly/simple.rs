@@ -71,9 +71,10 @@ fn ball(model: &Model, third: usize) -> Option<[usize; 3]> {
             .closures
             .iter()
             .any(|closure| closure.bodies().contains(&empty));
+        let has_spring = { model.springs.iter() }.any(|own| own.bodies.contains(&empty));
         let has_mass = model.bodies[empty].has_unknown_inertia
             || !is_massless(model.bodies[empty].inertia.as_ref());
-        if children != 1 || closes || has_mass {
+        if children != 1 || closes || has_mass || has_spring {
             return None;
         }
     }

@@ -19,7 +19,7 @@ pub(crate) fn check(files: &Files, network: &Network<'_>) -> Option<()> {
     if model.closures.is_empty() {
         return Some(());
     }
-    let motors = model.joints.iter().filter(|joint| joint.actuated).count();
+    let motors = model.drives().len();
     if motors >= network.mobility {
         return Some(());
     }
@@ -54,11 +54,15 @@ fn moving(network: &Network<'_>) -> Vec<usize> {
         return Vec::new();
     };
     let free = network.motions(&motion, state);
-    let of_motors = (0..motion.coordinates.len())
-        .filter(|&at| model.joints[motion.coordinates[at].joint].actuated)
-        .collect::<Vec<_>>();
-    let driven = DMatrix::from_fn(of_motors.len(), free.ncols(), |i, j| {
-        free[(of_motors[i], j)]
+    let drives = model.drives();
+    let rate = |joint: usize, motion_at: usize| {
+        let mut coordinates = motion.coordinates.iter();
+        let at = coordinates.position(|own| own.joint == joint);
+        at.map_or(0.0, |at| free[(at, motion_at)])
+    };
+    let driven = DMatrix::from_fn(drives.len(), free.ncols(), |i, j| {
+        let terms = drives[i].iter();
+        terms.map(|(joint, factor)| factor * rate(*joint, j)).sum()
     });
     let undriven = &free * null_space(&driven);
     let largest = undriven.amax();

@@ -64,6 +64,13 @@ pub(super) fn joint(patch: &mut Patch, joint: Node<'_, '_>, values: &[(&'static 
     }
 }
 
+/// Writes stiffness and damping of a tendon.
+pub(super) fn tendon(patch: &mut Patch, tendon: Node<'_, '_>, values: &[(&'static str, f64)]) {
+    for (name, value) in values {
+        patch.set(tendon, name, &numbers(&[*value]));
+    }
+}
+
 /// Attributes of `<compiler>` that change inertias after they are read.
 const ADJUSTMENTS: [&str; 5] = [
     "boundmass",

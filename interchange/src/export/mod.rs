@@ -15,7 +15,7 @@ use crate::{
     format::Format,
     import::{self, Robot},
     options::Options,
-    plan::{Joint, Plan},
+    plan::{Joint, Plan, Spring},
 };
 use overact_description::{Source, parse_parameters};
 use patch::{Patch, element_at};
@@ -145,6 +145,8 @@ fn values(files: &Files, parameters: &Path, toml: &str) -> Option<BTreeMap<Strin
 struct ExportChanges {
     inertias: BTreeMap<(usize, usize), crate::model::Inertia>,
     joints: BTreeMap<(usize, usize), Vec<(&'static str, f64)>>,
+    /// Springs and dampers between two points.
+    springs: BTreeMap<(usize, usize), Vec<(&'static str, f64)>>,
     names: Vec<String>,
 }
 
@@ -179,6 +181,36 @@ impl Export<'_, '_> {
                 self.body(joint, &of);
                 self.torques(joint, &of);
             }
+        }
+        for spring in &plan.springs {
+            self.point_spring(spring);
+        }
+    }
+
+    /// Compares stiffness and damping between two points with the file's and records changes.
+    fn point_spring(&mut self, spring: &Spring) {
+        let file_spring = &self.network.model.springs[spring.of];
+        let stiffness = spring
+            .stiffness
+            .map(|value| ("stiffness", &spring.name, value));
+        let damper = spring.damper.as_ref();
+        let damping = damper.map(|(name, value)| ("damping", name, *value));
+        let mut changes = Vec::new();
+        for (attribute, name, before) in stiffness.into_iter().chain(damping) {
+            let name = format!("k_{name}");
+            let Some(&value) = self.values.get(&name) else {
+                continue;
+            };
+            if (value - before).abs() > SAME * before.abs() {
+                changes.push((attribute, value));
+            }
+            self.expressed.insert(name);
+        }
+        if !changes.is_empty() {
+            let place = &file_spring.place;
+            let key = (place.file, place.span.start);
+            self.wanted.springs.insert(key, changes);
+            self.wanted.names.push(file_spring.name.clone());
         }
     }
 
@@ -344,6 +376,7 @@ impl Export<'_, '_> {
     /// Texts of the changed files; `None` after an error.
     fn patched(&self) -> Option<BTreeMap<usize, String>> {
         let keys = self.wanted.inertias.keys().chain(self.wanted.joints.keys());
+        let keys = keys.chain(self.wanted.springs.keys());
         let mut files: BTreeSet<usize> = keys.map(|(file, _)| *file).collect();
         let is_written_out = self.format == Format::Mjcf
             && self.network.model.adjusts_inertias
@@ -383,6 +416,11 @@ impl Export<'_, '_> {
                     Format::Urdf => urdf::joint(&mut patch, &text, node, values),
                     Format::Par | Format::Sdf => {}
                 }
+            }
+            let springs = self.wanted.springs.iter();
+            for ((_, start), values) in springs.filter(|((of, _), _)| *of == file) {
+                let node = element_at(&document, *start)?;
+                mjcf::tendon(&mut patch, node, values);
             }
             if !patch.is_empty() {
                 texts.insert(file, patch.applied(&text));

@@ -329,8 +329,10 @@ fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Jo
         ["damping", "frictionloss", "armature"].map(|key| first(files, element, key));
     joint.given = Some([joint.armature, joint.damping, joint.friction]);
     let stiffness = first(files, element, "stiffness");
+    let rest = position("springref");
+    joint.rest = Some(rest);
     if stiffness != 0.0 {
-        joint.spring = Some((stiffness, position("springref")));
+        joint.spring = Some((stiffness, rest));
     }
     Some(joint)
 }

@@ -62,7 +62,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
     if !files.is_clean() {
         return None;
     }
-    let mut tendons = Tendons::read(&reader, &root, &model);
+    let mut tendons = Tendons::read(&reader, &root, &sites, &model);
     equality::read(&reader, &root, &sites, &mut tendons, &mut model);
     actuators::read(&reader, &root, &mut tendons, &mut model);
     tendons.finish(files, &mut model);

@@ -1,15 +1,18 @@
 //! Tendons: fixed ones are linear combinations of joints.
 //!
 //! As targets of actuators they become motors of several joints, in equalities couplings of joints.
-//! Forces that tendons exert by themselves are supported for those of a single joint.
+//! Forces that tendons exert by themselves are supported for those of a single joint, springs and
+//! dampers also for spatial tendons between two sites.
 
-use super::{Reader, bodies::first, defaults::MAIN};
+use super::{Reader, Sites, bodies::first, defaults::MAIN};
 use crate::{
+    assembly::motion::Motion,
     files::{Files, Place},
-    model::{JointType, Model, Motor},
+    model::{JointType, Model, Motor, PointSpring, Pose},
     motors::independent,
     xml::Element,
 };
+use nalgebra::Point3;
 
 /// Tag of tendon defaults.
 const TENDON: &str = "tendon";
@@ -20,7 +23,11 @@ pub(super) struct Tendon {
     pub(super) name: String,
     /// Joints and their coefficients in its length; `None` for a path in space.
     pub(super) joints: Option<Vec<(usize, f64)>>,
+    /// Body and point of each site; `None` for a path around geoms or over pulleys.
+    path: Option<Vec<(usize, Point3<f64>)>>,
     stiffness: f64,
+    /// Smallest and largest length without force; `None` for that of the springs' positions.
+    rest: Option<[f64; 2]>,
     damping: f64,
     friction: f64,
     armature: f64,
@@ -35,14 +42,14 @@ pub(super) struct Tendon {
 pub(super) struct Tendons(Vec<Tendon>);
 
 impl Tendons {
-    pub(super) fn read(reader: &Reader<'_>, root: &Element, model: &Model) -> Self {
+    pub(super) fn read(reader: &Reader<'_>, root: &Element, sites: &Sites, model: &Model) -> Self {
         let mut all = Vec::new();
         for section in root.all("tendon") {
             for element in &section.children {
                 let whole = reader
                     .defaults
                     .apply_as(TENDON, reader.files, element, MAIN);
-                all.push(tendon(reader.files, &whole, model));
+                all.push(tendon(reader.files, &whole, sites, model));
             }
         }
         Self(all)
@@ -60,19 +67,26 @@ impl Tendons {
         Some(&mut self.0[at])
     }
 
-    /// Adds inertia and friction of tendons without an actuator to their joints.
+    /// Adds inertia, friction and springs of tendons without an actuator to their joints, and springs
+    /// and dampers between two sites to the model.
     ///
     /// Rejects tendons that exert other forces, and reports those without a use.
     pub(super) fn finish(self, files: &Files, model: &mut Model) {
+        let poses = Motion::new(model).at_rest();
         for own in self.0 {
-            if own.stiffness != 0.0 {
-                let message = format!("the spring of the tendon `{}` is not supported", own.name);
-                let help =
-                    "write `stiffness` and `springref` at a joint, or remove the `stiffness`";
-                files.report(&own.place, message, help);
-                continue;
+            if own.has_spring() && own.joints.is_some() {
+                own.add_to_joint(files, model);
+            } else if (own.has_spring() || own.damping != 0.0) && own.joints.is_none() {
+                if let Some(spring) = own.between_points(files, &poses) {
+                    model.springs.push(spring);
+                }
+                if [own.friction, own.armature] == [0.0; 2] {
+                    continue;
+                }
             }
-            let has_forces = [own.damping, own.friction, own.armature] != [0.0; 3];
+            let damping = own.joints.as_ref().map_or(0.0, |_| own.damping);
+            let has_forces = [damping, own.friction, own.armature] != [0.0; 3];
+            let is_used = own.is_used || own.has_spring();
             let turns = own.joints.map(|joints| independent(model, &joints));
             match turns.as_deref() {
                 Some([(joint, factor)]) if has_forces => {
@@ -89,7 +103,7 @@ impl Tendons {
                     let help = "remove its damping, frictionloss and armature";
                     files.report(&own.place, message, help);
                 }
-                _ if !own.is_used => {
+                _ if !is_used => {
                     let reason = "exerts no force; its limits are not used";
                     files.demote(&own.place, &own.tag, None, reason);
                 }
@@ -100,6 +114,79 @@ impl Tendons {
 }
 
 impl Tendon {
+    fn has_spring(&self) -> bool {
+        self.stiffness != 0.0
+    }
+
+    /// The only length without force; reports an interval of lengths.
+    fn single_rest(&self, files: &Files) -> Option<Option<f64>> {
+        match self.rest {
+            None => Some(None),
+            Some([low, high]) if low == high => Some(Some(low)),
+            Some(_) => {
+                let name = &self.name;
+                let message = format!(
+                    "the spring of the tendon `{name}` has an interval without force, which is not supported"
+                );
+                let help = "write one `springlength`, or remove the `stiffness`";
+                files.report(&self.place, message, help);
+                None
+            }
+        }
+    }
+
+    /// Adds the spring of a fixed tendon of one joint to the joint.
+    fn add_to_joint(&self, files: &Files, model: &mut Model) {
+        let Some(rest) = self.single_rest(files) else {
+            return;
+        };
+        let joints = self.joints.as_deref().unwrap_or_default();
+        let &[(joint, factor)] = joints else {
+            let name = &self.name;
+            let message = format!(
+                "the spring of the tendon `{name}` acts on several joints, which is not supported"
+            );
+            let help = "write `stiffness` and `springref` at a joint, or remove the `stiffness`";
+            files.report(&self.place, message, help);
+            return;
+        };
+        if factor == 0.0 {
+            return;
+        }
+        let own = &mut model.joints[joint];
+        let at_rest = own.rest.unwrap_or(own.home);
+        // Lengths are sums of positions of joints.
+        let rest = rest.map_or(at_rest, |length| length / factor);
+        own.add_spring(factor * factor * self.stiffness, rest);
+        own.tendon_stiffness += factor * factor * self.stiffness;
+    }
+
+    /// Spring and damper of a spatial tendon between two sites.
+    ///
+    /// `poses` are those of the bodies where it exerts no force by default.
+    fn between_points(&self, files: &Files, poses: &[Pose]) -> Option<PointSpring> {
+        let name = &self.name;
+        let Some(&[(a, at_a), (b, at_b)]) = self.path.as_deref() else {
+            let message = format!(
+                "the tendon `{name}` exerts forces along a path that is no straight line, which is not supported"
+            );
+            let help = "let it connect two sites, or remove its stiffness and damping";
+            files.report(&self.place, message, help);
+            return None;
+        };
+        let rest = self.single_rest(files)?;
+        let length = || (poses[a] * at_a - poses[b] * at_b).norm();
+        Some(PointSpring {
+            name: name.clone(),
+            bodies: [a, b],
+            at: [at_a, at_b],
+            stiffness: self.stiffness,
+            damping: self.damping,
+            rest: rest.unwrap_or_else(length),
+            place: self.place.clone(),
+        })
+    }
+
     /// Motor that pulls at the tendon, with the tendon's own inertia and friction.
     ///
     /// Later motors of the same tendon do not have them again.
@@ -115,17 +202,26 @@ impl Tendon {
     }
 }
 
-fn tendon(files: &Files, element: &Element, model: &Model) -> Tendon {
+fn tendon(files: &Files, element: &Element, sites: &Sites, model: &Model) -> Tendon {
     let joints = (element.name == "fixed").then(|| {
         let joints = element.all("joint");
         joints.filter_map(|own| term(files, own, model)).collect()
     });
+    let rest = element.list(files, "springlength").unwrap_or_default();
+    let rest = match rest[..] {
+        [both] => Some([both; 2]),
+        [low, high, ..] => Some([low, high]),
+        [] => None,
+    };
     let [stiffness, damping, friction, armature] =
         ["stiffness", "damping", "frictionloss", "armature"].map(|key| first(files, element, key));
     Tendon {
         name: element.get("name").unwrap_or("").to_owned(),
         joints,
+        path: path(files, element, sites),
         stiffness,
+        // Negative lengths are computed from the positions of springs.
+        rest: rest.filter(|rest| *rest != [-1.0; 2]),
         damping,
         friction,
         armature,
@@ -133,6 +229,29 @@ fn tendon(files: &Files, element: &Element, model: &Model) -> Tendon {
         place: element.place.clone(),
         is_used: false,
     }
+}
+
+/// Points of a spatial tendon on their bodies; `None` for another path, or for a fixed tendon.
+fn path(files: &Files, element: &Element, sites: &Sites) -> Option<Vec<(usize, Point3<f64>)>> {
+    let has_other = ["geom", "pulley"].map(|tag| element.all(tag).next().is_some());
+    if element.name == "fixed" || has_other.contains(&true) {
+        return None;
+    }
+    let ends: Vec<&Element> = element.all("site").collect();
+    if ends.len() != 2 {
+        return None;
+    }
+    let point = |own: &Element| {
+        let name = own.required(files, "site")?;
+        let Some((body, frame)) = sites.get(name) else {
+            let near = files.did_you_mean(name, sites.keys().map(String::as_str));
+            let help = near.unwrap_or_else(|| "name a site of a body".to_owned());
+            files.report(&own.place, format!("there is no site `{name}`"), help);
+            return None;
+        };
+        Some((*body, Point3::from(frame.translation.vector)))
+    };
+    Some(ends.into_iter().filter_map(point).collect())
 }
 
 /// Joint and coefficient of a fixed tendon.

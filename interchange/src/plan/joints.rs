@@ -187,7 +187,7 @@ impl<'d, 'm> Draft<'d, 'm> {
     }
 
     /// Joints in the form of the description.
-    pub(super) fn joints(&self, framed: &[Framed], has_loops: bool) -> Vec<Joint> {
+    pub(super) fn joints(&self, framed: &[Framed]) -> Vec<Joint> {
         let mut all: Vec<Joint> = Vec::new();
         let mut taken = Names::default();
         for name in &self.names {
@@ -202,7 +202,7 @@ impl<'d, 'm> Draft<'d, 'm> {
                 let name = taken.unique(&format!("{}_turn", self.names[at]));
                 all.push(quarter(name, antecedent.take()));
             }
-            all.push(self.joint(at, framed.step, antecedent, has_loops));
+            all.push(self.joint(at, framed.step, antecedent));
             last = Some(at);
         }
         self.add_bodies(framed, &mut all);
@@ -210,7 +210,7 @@ impl<'d, 'm> Draft<'d, 'm> {
         all
     }
 
-    fn joint(&self, at: usize, step: Step, antecedent: Option<String>, has_loops: bool) -> Joint {
+    fn joint(&self, at: usize, step: Step, antecedent: Option<String>) -> Joint {
         let (index, axis) = self.origins[at];
         let edge = &self.network.edges[index];
         let node = &self.nodes[at];
@@ -240,7 +240,7 @@ impl<'d, 'm> Draft<'d, 'm> {
                 joint.comment.extend(at_home(self.network, edge));
             }
         }
-        self.torques(edge, &mut joint, has_loops);
+        self.torques(edge, &mut joint);
         joint
     }
 
@@ -269,7 +269,7 @@ impl<'d, 'm> Draft<'d, 'm> {
     }
 
     /// Sets motor, friction, spring and coupling of a joint.
-    fn torques(&self, edge: &Edge, joint: &mut Joint, has_loops: bool) {
+    fn torques(&self, edge: &Edge, joint: &mut Joint) {
         let Origin::Joint(at) = edge.origin else {
             return;
         };
@@ -278,7 +278,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             return;
         }
         joint.of = Some(at);
-        joint.actuated = own.actuated;
+        joint.actuated = own.actuated && !own.is_turned;
         let mut symbols = Vec::new();
         let given = [
             ("ia", own.armature),
@@ -291,14 +291,14 @@ impl<'d, 'm> Draft<'d, 'm> {
             }
             // The rotor of a motor that turns several joints is a parameter of the motor.
             let is_of_motor = symbol == "ia" && self.is_turned_with_others(at);
-            if value != 0.0 || own.actuated && !is_of_motor {
+            if value != 0.0 || joint.actuated && !is_of_motor {
                 symbols.push(symbol);
             }
         }
-        if own.actuated {
+        if joint.actuated {
             symbols.push("off");
         }
-        if let Some((stiffness, rest)) = own.spring.filter(|_| !has_loops) {
+        if let Some((stiffness, rest)) = own.spring {
             joint.spring = Some(rest - self.constant(at));
             joint.values.push(("k", stiffness));
         }

@@ -5,6 +5,7 @@ mod motors;
 mod names;
 mod platform;
 mod screws;
+mod springs;
 
 use crate::{
     assembly::{
@@ -23,6 +24,7 @@ use names::Names;
 
 pub(crate) use names::word;
 pub(crate) use platform::PlanPlatform;
+pub(crate) use springs::Spring;
 
 /// A leg.
 #[derive(Debug)]
@@ -91,6 +93,10 @@ pub(crate) struct End {
 #[derive(Debug)]
 pub(crate) struct Plan {
     pub(crate) legs: Vec<Leg>,
+    /// Motors that turn several joints, in a robot with loops.
+    pub(crate) motors: Vec<Motor>,
+    /// Springs and dampers between two points.
+    pub(crate) springs: Vec<Spring>,
     /// Axes of the skeleton's joints in the world at home, including coupled joints.
     pub(crate) axes: Vec<Vector3<f64>>,
     /// Platform on which the legs end; `None` if they end on bodies.
@@ -110,7 +116,9 @@ impl Plan {
         let mut names = Names::default();
         let (leg, mut axes) = skeleton(files, network, layout, &mut bodies, &mut names);
         let mut legs = vec![leg];
-        legs[0].motors = motors::of_leg(network.model, &legs[0]);
+        if network.model.closures.is_empty() {
+            legs[0].motors = motors::of_leg(network.model, &legs[0]);
+        }
         for piece in &layout.pieces {
             legs.push(match piece {
                 LayoutPiece::Chain(ear) => chain(files, network, ear, &mut bodies, &mut names)?,
@@ -121,9 +129,17 @@ impl Plan {
                 }
             });
         }
+        let motors = if network.model.closures.is_empty() {
+            Vec::new()
+        } else {
+            motors::of_robot(network.model, &legs)
+        };
+        let springs = springs::between_points(files, network, &bodies);
         let notes = notes(network, layout);
         Some(Self {
             legs,
+            motors,
+            springs,
             axes,
             platform: None,
             notes,
@@ -152,7 +168,7 @@ fn skeleton(
     } else {
         vec![independent(network, layout)]
     };
-    let joints = draft.joints(&framed, !is_tree);
+    let joints = draft.joints(&framed);
     let axes = draft.nodes.iter().map(|node| node.direction).collect();
     let leg = Leg {
         name,
@@ -219,7 +235,7 @@ fn branch(
             bodies[*group] = Some((format!("{name}.{}", draft.names[at]), framed[at].frame));
         }
     }
-    let joints = draft.joints(&framed, true);
+    let joints = draft.joints(&framed);
     let axes = draft.nodes.iter().map(|node| node.direction).collect();
     let comment = format!(
         "A branch on `{}`, a body of a chain: its joints are also independent coordinates.",
@@ -274,7 +290,7 @@ fn chain(
             bodies[*group] = Some((format!("{name}.{}", draft.names[at]), framed[at].frame));
         }
     }
-    let mut joints = draft.joints(&framed, true);
+    let mut joints = draft.joints(&framed);
     let (end_name, end_frame) = bodies[last].clone()?;
     let last_frame = framed.last()?.frame;
     if let Some(point) = end_point {

@@ -1,6 +1,6 @@
-//! Motor tables of serial robots.
+//! Motor tables: of the leg of a robot without loops, and of robots with loops.
 
-use super::{Joint, Leg, Motor, names::Names};
+use super::{Leg, Motor, names::Names};
 use crate::{
     geometry::digits::fine,
     model::{JointType, Model},
@@ -12,6 +12,31 @@ pub(super) fn of_leg(model: &Model, leg: &Leg) -> Vec<Motor> {
     for joint in &leg.joints {
         names.unique(&joint.name);
     }
+    motors(model, &mut names, &|joint| {
+        let own = leg.joints.iter().find(|own| own.of == Some(joint));
+        own.map(|own| format!("q_{}", own.name))
+    })
+}
+
+/// Motors of a robot with loops, whose joints may be in several legs.
+pub(super) fn of_robot(model: &Model, legs: &[Leg]) -> Vec<Motor> {
+    let mut names = Names::default();
+    for leg in legs {
+        names.unique(&leg.name);
+    }
+    motors(model, &mut names, &|joint| {
+        let mut all = legs
+            .iter()
+            .flat_map(|leg| leg.joints.iter().map(move |own| (leg, own)));
+        let (leg, own) = all.find(|(_, own)| own.of == Some(joint))?;
+        Some(format!("{}.q_{}", leg.name, own.name))
+    })
+}
+
+/// Name of a joint's variable; `None` for a joint that the description does not have.
+type Variable<'v> = &'v dyn Fn(usize) -> Option<String>;
+
+fn motors(model: &Model, names: &mut Names, variable: Variable<'_>) -> Vec<Motor> {
     let mut motors = Vec::new();
     for (at, own) in model.motors.iter().enumerate() {
         let name = if own.name.is_empty() {
@@ -26,7 +51,7 @@ pub(super) fn of_leg(model: &Model, leg: &Leg) -> Vec<Motor> {
         ];
         motors.push(Motor {
             name: names.unique(&name),
-            turns: combination(model, leg, &own.turns),
+            turns: combination(model, &own.turns, variable),
             ratio: own.ratio,
             values: given
                 .into_iter()
@@ -38,13 +63,12 @@ pub(super) fn of_leg(model: &Model, leg: &Leg) -> Vec<Motor> {
 }
 
 /// Expression of a combination of joints.
-fn combination(model: &Model, leg: &Leg, turns: &[(usize, f64)]) -> String {
+fn combination(model: &Model, turns: &[(usize, f64)], variable: Variable<'_>) -> String {
     let is_angle = |joint: usize| model.joints[joint].kind == JointType::Revolute;
     let has_angles = turns.iter().any(|(joint, _)| is_angle(*joint));
     let mut text = String::new();
     for &(joint, factor) in turns {
-        let is_own = |own: &&Joint| own.of == Some(joint);
-        let Some(own) = leg.joints.iter().find(is_own) else {
+        let Some(name) = variable(joint) else {
             continue;
         };
         match (text.is_empty(), factor < 0.0) {
@@ -62,7 +86,7 @@ fn combination(model: &Model, leg: &Leg, turns: &[(usize, f64)]) -> String {
         if size != 1.0 || !unit.is_empty() {
             text.push_str(&format!("{}{unit} * ", fine(size, size)));
         }
-        text.push_str(&format!("q_{}", own.name));
+        text.push_str(&name);
     }
     text
 }

@@ -1,6 +1,6 @@
 //! Plan of a robot with a platform in space, some motions of which its legs block.
 
-use super::{Bodies, Leg, Names, Plan, chain, joints, notes};
+use super::{Bodies, Leg, Names, Plan, chain, joints, motors, notes, springs};
 use crate::assembly::simple::is_massless;
 use crate::{
     assembly::{layout::Layout, network::Network, parasitic::ParasiticPlatform},
@@ -44,12 +44,22 @@ impl Plan {
         let legs: Option<Vec<Leg>> = { each }
             .map(|leg| chain(files, network, leg, &mut bodies, &mut names))
             .collect();
+        let legs = legs?;
+        let motors = motors::of_robot(network.model, &legs);
+        let mut springs = springs::between_points(files, network, &bodies);
+        for (name, _) in springs.iter_mut().flat_map(|spring| &mut spring.ends) {
+            if name == PLATFORM {
+                "platform".clone_into(name);
+            }
+        }
         let inertia = group.inertia.filter(|own| !is_massless(Some(own)));
         let values = inertia.map(|own| joints::inertial(&own.transformed(&home.inverse())));
         let name = network.group_name(platform.group);
         let independent = { platform.independent.iter() }.map(|&at| COORDINATES[at]);
         Some(Self {
-            legs: legs?,
+            legs,
+            motors,
+            springs,
             axes: Vec::new(),
             platform: Some(PlanPlatform {
                 comment: format!(

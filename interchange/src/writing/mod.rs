@@ -12,7 +12,7 @@ use crate::{
     geometry::digits::{angle, decimal, fine, is_zero},
     model::Pose,
     options::Options,
-    plan::{Joint, Leg, Motor, Plan, word},
+    plan::{Joint, Leg, Motor, Plan, Spring, word},
 };
 use overact_description::diagnostic::Span;
 use std::fmt::Write as _;
@@ -70,6 +70,12 @@ pub(crate) fn toml(
     }
     for leg in &plan.legs {
         place(&mut text, leg);
+    }
+    for motor in &plan.motors {
+        self::motor(&mut text, None, motor);
+    }
+    for spring in &plan.springs {
+        point_spring(&mut text, spring);
     }
     experiment::toml(&mut text, designed);
     values(&mut text, plan, &mut joints);
@@ -147,7 +153,7 @@ fn shape(text: &mut String, leg: &Leg, joints: &mut Vec<(Span, usize)>) {
         joints.extend(joint.of.map(|of| (start..text.len(), of)));
     }
     for motor in &leg.motors {
-        self::motor(text, &leg.name, motor);
+        self::motor(text, Some(&leg.name), motor);
     }
     if let Some(end) = &leg.end {
         let _ = writeln!(text, "\n[leg.{}.end]", leg.name);
@@ -163,16 +169,38 @@ fn shape(text: &mut String, leg: &Leg, joints: &mut Vec<(Span, usize)>) {
 }
 
 /// Table of a motor; its torque and position are those behind the gear.
-fn motor(text: &mut String, leg: &str, motor: &Motor) {
+fn motor(text: &mut String, leg: Option<&str>, motor: &Motor) {
     let Motor {
         name, turns, ratio, ..
     } = motor;
-    let _ = writeln!(
-        text,
-        "\n[[leg.{leg}.motor]]\nname = \"{name}\"\nturns = \"{turns}\""
-    );
+    let _ = match leg {
+        Some(leg) => writeln!(text, "\n[[leg.{leg}.motor]]\nname = \"{name}\""),
+        None => writeln!(text, "\n[motor.{name}]"),
+    };
+    let _ = writeln!(text, "turns = \"{turns}\"");
     if *ratio != 1.0 {
         let _ = writeln!(text, "ratio = {}", fine(*ratio, *ratio));
+    }
+}
+
+/// Tables of a spring and of a damper between two points.
+fn point_spring(text: &mut String, spring: &Spring) {
+    let [from, to] = &spring.ends;
+    let mut table = |name: &str, force: &str| {
+        let _ = writeln!(text, "\n[[spring]]\nname = \"{name}\"");
+        for (key, (body, at)) in [("from", from), ("to", to)] {
+            let at: Vec<String> = at.coords.iter().map(|v| decimal(*v)).collect();
+            let at = at.join(", ");
+            let _ = writeln!(text, "{key} = {{ body = \"{body}\", at = [{at}] }}");
+        }
+        let _ = writeln!(text, "force = \"{force}\"");
+    };
+    if spring.stiffness.is_some() {
+        let rest = decimal(spring.rest);
+        table(&spring.name, &format!("l - {rest} m"));
+    }
+    if let Some((name, _)) = &spring.damper {
+        table(name, "dl");
     }
 }
 
@@ -363,9 +391,18 @@ fn values(text: &mut String, plan: &Plan, joints: &mut Vec<(Span, usize)>) {
         }
     }
     let motors = plan.legs.iter().flat_map(|leg| &leg.motors);
+    let motors = motors.chain(&plan.motors);
     for motor in motors {
         for (symbol, value) in &motor.values {
             let line = format!("{symbol}_{} = {}", motor.name, fine(*value, value.abs()));
+            lines.push((true, line, None));
+        }
+    }
+    for spring in &plan.springs {
+        let own = spring.stiffness.map(|value| (&spring.name, value));
+        let damper = spring.damper.as_ref().map(|(name, value)| (name, *value));
+        for (name, value) in own.into_iter().chain(damper) {
+            let line = format!("k_{name} = {}", fine(value, value.abs()));
             lines.push((true, line, None));
         }
     }

@@ -189,10 +189,40 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
             Format::Text
         });
     }
+    if is_matlab_4(beginning) {
+        let message = "the file is of MATLAB's version 4, which is not supported";
+        let problem = Problem::new(Code::LOG_FORMAT, message);
+        return Err(problem.help("save it in MATLAB with `save(..., '-v7')`, or export CSV"));
+    }
     let message = "the file is neither text nor of a known format";
     Err(Problem::new(Code::LOG_FORMAT, message).help(
         "logs are text (CSV), JSON Lines, Parquet, MATLAB's `.mat`, NumPy's `.npy` and `.npz`, HDF5 or MCAP",
     ))
+}
+
+/// Whether a file starts as one of MATLAB's version 4.
+///
+/// It starts with five integers of 32 bits: the type M·1000 + O·100 + P·10 + T with O = 0, rows,
+/// columns, whether numbers are complex, and the length of the name.
+fn is_matlab_4(file: &[u8]) -> bool {
+    let Some(header) = file.first_chunk::<20>() else {
+        return false;
+    };
+    let number = |at: usize, is_little: bool| {
+        let bytes = [header[at], header[at + 1], header[at + 2], header[at + 3]];
+        if is_little {
+            u32::from_le_bytes(bytes)
+        } else {
+            u32::from_be_bytes(bytes)
+        }
+    };
+    [true, false].into_iter().any(|is_little| {
+        let own = |at: usize| number(at, is_little);
+        let (kind, complex, name) = (own(0), own(12), own(16));
+        let machine = if is_little { 0 } else { 1 };
+        let is_kind = kind / 1000 == machine && kind / 100 % 10 == 0;
+        is_kind && kind / 10 % 10 <= 5 && kind % 10 <= 2 && complex <= 1 && (1..256).contains(&name)
+    })
 }
 
 /// Whether a text starts with a JSON object, or a list of objects.

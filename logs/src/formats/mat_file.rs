@@ -18,11 +18,7 @@ use crate::{
 pub(crate) fn open(file: String, medium: &ByteSource) -> Result<Arrays, Error> {
     let bytes = medium.read().map_err(|error| unreadable(&file, &error))?;
     let broken = |why: String| -> Error {
-        let message = if is_version_4(&bytes) {
-            String::from("the file is a MATLAB v4 file, which overact does not read")
-        } else {
-            format!("the file is not a MATLAB v5 file: {why}")
-        };
+        let message = format!("the file is not a MATLAB v5 file: {why}");
         let problem = Problem::new(Code::LOG_FORMAT, message).file(file.as_str());
         let help = "save it in MATLAB with `save(..., '-v7')`, or export CSV";
         problem.help(help).into()
@@ -53,31 +49,6 @@ pub(crate) fn open(file: String, medium: &ByteSource) -> Result<Arrays, Error> {
     });
     arrays.objects = read.map_err(broken)?;
     Ok(arrays)
-}
-
-/// Whether a file starts as one of MATLAB's version 4.
-///
-/// It starts with five integers of 32 bits: the type M·1000 + O·100 + P·10 + T with O = 0, rows,
-/// columns, whether numbers are complex, and the length of the name.
-fn is_version_4(file: &[u8]) -> bool {
-    let Some(header) = file.first_chunk::<20>() else {
-        return false;
-    };
-    let number = |at: usize, is_little: bool| {
-        let bytes = [header[at], header[at + 1], header[at + 2], header[at + 3]];
-        if is_little {
-            u32::from_le_bytes(bytes)
-        } else {
-            u32::from_be_bytes(bytes)
-        }
-    };
-    [true, false].into_iter().any(|is_little| {
-        let own = |at: usize| number(at, is_little);
-        let (kind, complex, name) = (own(0), own(12), own(16));
-        let machine = if is_little { 0 } else { 1 };
-        let is_kind = kind / 1000 == machine && kind / 100 % 10 == 0;
-        is_kind && kind / 10 % 10 <= 5 && kind % 10 <= 2 && complex <= 1 && (1..256).contains(&name)
-    })
 }
 
 /// Adds an array under a name.

@@ -56,8 +56,12 @@ pub(crate) fn prior<N: AsRef<str>>(
     home_joints: &[f64],
 ) -> Prior {
     let mut prior = Prior {
-        values: description.prior.values.iter().cloned().collect(),
+        values: { description.prior.values.iter() }
+            .filter(|(name, _)| !description.prior.held.iter().any(|(held, _)| held == name))
+            .cloned()
+            .collect(),
         bounds: description.prior.bounds.iter().cloned().collect(),
+        held: description.prior.held.iter().cloned().collect(),
         ..Prior::default()
     };
     let links = links(description, home_joints);

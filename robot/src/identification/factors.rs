@@ -96,6 +96,14 @@ impl Robot {
         let is_of_logs = identification.gains
             || identification.gravity_direction
             || identification.gear_friction;
+        if !self.description().prior.held.is_empty() {
+            let message = "the description holds parameters, which factors do not support";
+            let help = "identify from the logs, or leave out `held` of [prior]";
+            return Err(Problem::new(Code::FACTORS, message)
+                .file(self.file())
+                .help(help)
+                .into());
+        }
         if !is_of_logs {
             return Ok(());
         }

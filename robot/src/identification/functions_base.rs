@@ -24,9 +24,10 @@ pub(crate) fn functions_base(model: &RobotModel, found: &Identification) -> Vec<
         own.map(|one| one.value)
     };
     let kept = found.base_parameters.iter();
-    let kept: BTreeMap<String, f64> = kept
-        .filter_map(|one| Some((one.parameter.clone(), value(&one.name)?)))
-        .collect();
+    let kept = kept.filter_map(|one| Some((one.parameter.clone(), value(&one.name)?)));
+    let held = found.settings.prior.held.iter();
+    let held = held.map(|(name, value)| (name.clone(), *value));
+    let kept: BTreeMap<String, f64> = kept.chain(held).collect();
     let selection = &model.selection;
     let known: Vec<String> = (selection.standard.iter().chain(&selection.payload))
         .map(|&parameter| model.parameter_name(parameter))

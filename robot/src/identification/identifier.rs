@@ -10,7 +10,8 @@ use crate::{
 };
 use overact::Model;
 use overact_codegen::description::{
-    COUPLED_MOTORS, GAINS_AND_GRAVITY, GEARS_ALONE, GEARS_OF_COUPLED_MOTORS, KNOWN_TORQUES, Leg,
+    COUPLED_MOTORS, GAINS_AND_GRAVITY, GEARS_ALONE, GEARS_OF_COUPLED_MOTORS, HELD_AND_CORRECTIONS,
+    KNOWN_TORQUES, Leg,
 };
 use overact_codegen::diagnostic::Code;
 use overact_identification::{
@@ -219,6 +220,7 @@ impl<'a> Identifier<'a> {
     /// requested.
     fn identified(&self) -> Result<Identification, Error> {
         self.check_gears()?;
+        self.check_held()?;
         if self.gravity_direction {
             let made = self.in_gravity(|own, found| own.estimated(PriorStage::Gravity(found)))?;
             let (mut result, found) = made;
@@ -256,6 +258,17 @@ impl<'a> Identifier<'a> {
         }
         let problem = Problem::new(Code::CONTRADICTION, why).file(self.robot.file());
         Err(problem.help("identify without `gear_friction`").into())
+    }
+
+    /// Rejects held parameters next to corrections of the torques.
+    fn check_held(&self) -> Result<(), Error> {
+        let is_corrected = self.gains || self.gravity_direction || self.gear_friction;
+        if !is_corrected || self.robot.description().prior.held.is_empty() {
+            return Ok(());
+        }
+        let problem = Problem::new(Code::CONTRADICTION, HELD_AND_CORRECTIONS);
+        let help = "leave out `held` of [prior], or identify without the correction";
+        Err(problem.file(self.robot.file()).help(help).into())
     }
 
     /// Identification from the torques that the gears transmit.

@@ -151,7 +151,15 @@ fn estimated<'a>(
     };
     let prepared = prepare(model, runs, &[projection], &settings, &|_| {})?;
     let outcome = estimate_projection(&prepared, 0, &settings, None)?;
-    Ok(move |load: Option<&str>| standard(&model.info(), &prepared, &outcome.base, load))
+    let held = settings.prior.held;
+    Ok(move |load: Option<&str>| {
+        let info = model.info();
+        let mut all = standard(&info, &prepared, &outcome.base, load);
+        for (one, value) in info.parameters.iter().zip(&mut all) {
+            *value = held.get(one.name).copied().unwrap_or(*value);
+        }
+        all
+    })
 }
 
 /// Assigns each base parameter's value to its kept parameter; regrouped ones are zero.

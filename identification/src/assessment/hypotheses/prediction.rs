@@ -97,13 +97,16 @@ impl<'a> Prediction<'a> {
                 .columns
                 .evaluate(self.model, &states, self.base, 0)
                 .map_err(|error| motion.outside(first + error.sample, error.error))?;
+            let held = self
+                .columns
+                .held_inputs(self.model, &states)
+                .map_err(|error| motion.outside(first + error.sample, error.error))?;
             let p = self.base.len();
             for sample in 0..count {
-                all.extend(
-                    lines
-                        .iter()
-                        .map(|rows| dot(slice(rows, p, sample, 1), &self.values[..p])),
-                );
+                all.extend(lines.iter().enumerate().map(|(line, rows)| {
+                    let held = held.get(sample * r + line).copied().unwrap_or(0.0);
+                    held + dot(slice(rows, p, sample, 1), &self.values[..p])
+                }));
             }
         }
         Ok(all)

@@ -48,7 +48,8 @@ impl Columns {
             has_payload,
             settings.asymmetric_friction,
             settings.seed,
-        )?;
+        )?
+        .holding(&settings.prior);
         let payload = if has_payload {
             PayloadUse::Separate
         } else {

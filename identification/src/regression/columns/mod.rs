@@ -15,6 +15,8 @@
 //! to neither direction, both columns contribute, derived from their sum, the column of the sign.
 //! Stribeck friction has its own mean over the interval.
 
+mod held;
+
 use std::cell::Cell;
 
 use overact::{
@@ -166,6 +168,14 @@ impl Column {
         }
     }
 
+    /// Index among the robot's parameters, if it is a column of the robot without payload.
+    const fn index(&self) -> Option<usize> {
+        match self.origin {
+            Origin::Robot(index) => Some(index),
+            _ => None,
+        }
+    }
+
     /// Whether it belongs to the payload.
     pub(crate) const fn is_of_payload(&self) -> bool {
         self.origin.is_of_payload()
@@ -240,6 +250,8 @@ impl Column {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnSet {
     columns: Vec<Column>,
+    /// Held parameters without a column: index among the robot's parameters, and value.
+    held: Vec<(usize, f64)>,
 }
 
 impl ColumnSet {
@@ -291,7 +303,10 @@ impl ColumnSet {
                 ..Column::new(parameter, Origin::Payload(k))
             }));
         }
-        Ok(Self { columns })
+        Ok(Self {
+            columns,
+            held: Vec::new(),
+        })
     }
 
     /// Repeats the payload's columns for each of these payloads, such as `m_payload_A`.
@@ -304,7 +319,7 @@ impl ColumnSet {
             return self;
         }
         let (loads, mut columns): (Vec<Column>, Vec<Column>) =
-            { self.columns.into_iter() }.partition(|column| column.origin.is_of_payload());
+            { self.columns.iter().cloned() }.partition(|column| column.origin.is_of_payload());
         for name in names {
             let of_load = |column: &Column| match &column.load {
                 Some(own) => (own == name).then(|| column.clone()),
@@ -312,7 +327,7 @@ impl ColumnSet {
             };
             columns.extend(loads.iter().filter_map(of_load));
         }
-        Self { columns }
+        Self { columns, ..self }
     }
 
     /// Whether there are columns for a payload of this name, or for an unnamed one.
@@ -414,6 +429,8 @@ impl ColumnSet {
 
     /// Values of the model's standard parameters, then of the payload, for values of some columns.
     ///
+    /// Held parameters have their values, and those of other columns are zero.
+    ///
     /// They reproduce the columns except for the treatment of reversals. `None` if a column is
     /// friction of one direction, for which the model has no parameter.
     pub(crate) fn parameters(
@@ -423,7 +440,8 @@ impl ColumnSet {
         sizes: &Sizes,
         carried: Load<'_>,
     ) -> Option<Vec<f64>> {
-        let mut all = vec![0.0; sizes.parameters + sizes.payload_parameters];
+        let mut all = self.held(sizes);
+        all.resize(sizes.parameters + sizes.payload_parameters, 0.0);
         for (&index, &value) in picked.iter().zip(values) {
             let column = self.columns.get(index)?;
             let place = match column.origin {
