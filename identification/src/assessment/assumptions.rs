@@ -256,6 +256,7 @@ fn limit(one: &Detectable) -> String {
         }
         (_, FaultHypothesis::Scales) => String::from(" of all drives"),
         ("", _) => String::new(),
+        (name, FaultHypothesis::Crosstalk { .. }) => format!(" in `{name}`"),
         (name, fault) => match fault.shape() {
             Some(shape) => format!(" at `{name}` with {}", shape.words()),
             None => format!(" of `{name}`"),
