@@ -55,6 +55,7 @@ fn system(a: f64, seed: u64) -> System {
         lines: lines.iter().map(factor).collect(),
         parts: Vec::new(),
         phase_sums: Vec::new(),
+        totals: Vec::new(),
         stretches: vec![Stretch {
             run: 0,
             lines,
@@ -154,6 +155,7 @@ fn a_residual_that_repeats_itself_does_not_average_out() {
             lines: vec![factor],
             parts: Vec::new(),
             phase_sums: Vec::new(),
+            totals: Vec::new(),
             stretches: vec![Stretch {
                 run: 0,
                 lines: vec![rows],

@@ -66,6 +66,7 @@ fn system(errors: f64, seed: u64) -> System {
         lines: vec![line],
         parts: Vec::new(),
         phase_sums: Vec::new(),
+        totals: Vec::new(),
         stretches: vec![Stretch {
             run: 0,
             lines: vec![rows],

@@ -77,6 +77,7 @@ fn system(kind: DrawOptions, samples: usize, seed: u64) -> System {
         lines: lines.iter().map(factor).collect(),
         parts: Vec::new(),
         phase_sums: Vec::new(),
+        totals: Vec::new(),
         stretches: vec![Stretch {
             run: 0,
             lines,
