@@ -146,7 +146,9 @@ fn a_time_that_is_not_uniform_is_located() {
          expected 0.100000000 s\n  help: set `resample = \"10 Hz\"` in [data] to interpolate at uniform times, or cut the run where samples are missing"
     );
     let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n0,0,0\n");
-    assert!(text(log, folder.path()).contains("most samples have the time of the sample before them"));
+    assert!(
+        text(log, folder.path()).contains("most samples have the time of the sample before them")
+    );
     let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n1e-10,0,0\n3e-10,0,0\n");
     assert!(text(log, folder.path()).contains("it steps by 0.0000000001 s"));
 }

@@ -48,7 +48,10 @@ fn dates_and_times_of_day_are_seconds() {
         let next = date.replace("-01T", "-02T");
         let row = |k: usize| match k {
             0..10 => format!("{{\"t\": \"{time}{k}\", \"q\": {k}, \"tau\": 1}}\n"),
-            _ => format!("{{\"t\": \"{next}00:00:00.0{}\", \"q\": {k}, \"tau\": 1}}\n", k - 10),
+            _ => format!(
+                "{{\"t\": \"{next}00:00:00.0{}\", \"q\": {k}, \"tau\": 1}}\n",
+                k - 10
+            ),
         };
         let text: String = (0..20).map(row).collect();
         let files = [("a.jsonl", text.as_bytes())];

@@ -194,8 +194,7 @@ fn what_can_not_be_resampled_is_refused() {
     );
     let output = output.expect_err("not uniform");
     assert!(
-        output.contains("the time is not uniform")
-            && output.contains(" Hz\"` in [data]"),
+        output.contains("the time is not uniform") && output.contains(" Hz\"` in [data]"),
         "{output}"
     );
     let output = |rate: f64| resampled(rate, uneven()).expect_err("a rate");
