@@ -190,6 +190,20 @@ fn the_ankle_is_imported_identified_and_exported_as_shown() {
 }
 
 #[test]
+fn the_counterbalance_is_identified_as_shown() {
+    // The arm is identified twice.
+    if !overact_tier::is_full() {
+        return;
+    }
+    let text = fs::read_to_string(docs().join("tutorial-counterbalance.md")).expect("the page");
+    let files = Files {
+        toml: "arm.toml",
+        ..Files::default()
+    };
+    assert_eq!(follow(&Bench::new(), &text, &files), 8);
+}
+
+#[test]
 fn the_arm_is_imported_and_identified_from_a_log_as_shown() {
     // It is identified three times.
     if !overact_tier::is_full() {

@@ -354,15 +354,17 @@ impl Joint {
 
 impl Joint {
     /// Adds a spring; two springs of a joint act like one.
-    pub(crate) fn add_spring(&mut self, stiffness: f64, rest: f64) {
+    ///
+    /// Returns whether the sum is a spring: opposite ones leave a constant torque.
+    pub(crate) fn add_spring(&mut self, stiffness: f64, rest: f64) -> bool {
         let (own, at) = self.spring.unwrap_or((0.0, rest));
         let sum = own + stiffness;
         if sum == 0.0 {
-            // Opposite springs leave a constant torque, which no spring has.
-            self.spring = Some((own, at));
-            return;
+            self.spring = None;
+            return at == rest;
         }
         self.spring = Some((sum, (own * at + stiffness * rest) / sum));
+        true
     }
 
     /// Part of a torque parameter that actuators and tendons of the file contribute.

@@ -170,7 +170,11 @@ pub(super) fn springs(files: &Files, model: &mut Model, springs: &[SpringDamper]
         };
         let square = (spring.time_constant * spring.damping_ratio).powi(2);
         let [stiffness, damping] = [inertia / square, 2.0 * inertia / spring.time_constant];
-        joint.spring = Some((stiffness, spring.rest));
+        if !joint.add_spring(stiffness, spring.rest) {
+            let message =
+                "`springdamper` and a tendon leave a constant torque, which is not supported";
+            files.report(&joint.place, message, "remove one of them");
+        }
         joint.timed_spring = Some([stiffness, damping]);
         joint.damping += damping;
     }

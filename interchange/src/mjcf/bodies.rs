@@ -119,6 +119,7 @@ fn body(
             // The spring's damping replaces the joint's own.
             let own = &mut model.joints[at_joint];
             own.damping = 0.0;
+            own.spring = None;
             own.given = Some([own.armature, 0.0, own.friction]);
             tree.springs.push(spring);
         }

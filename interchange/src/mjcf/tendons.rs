@@ -157,8 +157,15 @@ impl Tendon {
         let at_rest = own.rest.unwrap_or(own.home);
         // Lengths are sums of positions of joints.
         let rest = rest.map_or(at_rest, |length| length / factor);
-        own.add_spring(factor * factor * self.stiffness, rest);
         own.tendon_stiffness += factor * factor * self.stiffness;
+        if !own.add_spring(factor * factor * self.stiffness, rest) {
+            let joint = own.name.clone();
+            let message = format!(
+                "the springs of the joint `{joint}` and of the tendon `{}` leave a constant torque, which is not supported",
+                self.name
+            );
+            files.report(&self.place, message, "remove one of them");
+        }
     }
 
     /// Spring and damper of a spatial tendon between two sites.
