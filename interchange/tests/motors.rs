@@ -302,8 +302,12 @@ fn motors_of_several_joints_are_kept_in_robots_with_loops() {
         + &tendon("")
         + "<actuator><motor name='belt' tendon='t' armature='0.2'/></actuator>";
     let text = hinges(&more).replacen("<body pos", "<body name='b1' pos", 1);
-    let at = text.rfind("<body pos").expect("a body");
-    let text = format!("{}<body name='b3' {}", &text[..at], &text[at + 6..]);
+    let at = text.rfind("<body pos='0.3 0 0'").expect("a body");
+    let text = format!(
+        "{}<body name='b3' pos='0.2 0 0.3'{}",
+        &text[..at],
+        &text[at + 19..]
+    );
     let found = imported("row.xml", &text);
     assert!(
         found.text.contains("[motor.belt]\nturns = \""),

@@ -84,11 +84,12 @@ fn joints_of_loops_keep_their_springs_and_fixed_tendons_add_to_them() {
     let fixed = "<fixed stiffness='2' springlength='1'><joint joint='knee' coef='2'/></fixed>";
     let text = imported(&four_bar("", fixed));
     assert!(text.contains("spring = \"q - (0.5)\""), "{text}");
-    assert!(
-        text.lines()
-            .any(|line| line.starts_with("k_knee") && line.ends_with(" = 8")),
-        "{text}"
-    );
+    let stiffness = |line: &str| {
+        let (name, value) = line.split_once(" = ")?;
+        name.starts_with("k_knee").then(|| value.parse::<f64>())
+    };
+    let stiffness = text.lines().find_map(stiffness);
+    assert_eq!(stiffness, Some(Ok(8.0)), "{text}");
     // 7 (q - 1.5) + 8 (q - 0.5)
     let text = imported(&four_bar("stiffness='7' springref='1.5'", fixed));
     assert!(text.contains("spring = \"q - (0.96666666"), "{text}");
@@ -150,7 +151,7 @@ fn exported(text: &str, parameters: &str) -> (String, Vec<String>) {
 fn stiffness_and_damping_of_tendons_are_exported() {
     let (text, notes) = exported(&four_bar("", GAS), "k_gas = 280\nk_gas_damper = 25");
     assert!(
-        text.contains("name='gas' stiffness='280' damping='25'"),
+        text.contains("name='gas' stiffness='280.0' damping='25.0'"),
         "{text}"
     );
     assert!(notes.is_empty(), "{notes:?}");

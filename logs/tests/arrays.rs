@@ -155,28 +155,6 @@ fn integers_of_matlab_are_numbers() {
     );
 }
 
-/// Simulink logs matrices as arrays n × m × samples.
-#[test]
-fn each_sample_of_an_array_with_three_dimensions_is_a_row() {
-    let size: Vec<u8> = [2_i32, 1, 3]
-        .iter()
-        .flat_map(|size| size.to_le_bytes())
-        .collect();
-    let flags = [6_u32.to_le_bytes(), [0; 4]].concat();
-    let values = doubles(&[1.0, 10.0, 2.0, 20.0, 3.0, 30.0]);
-    let array = [
-        element(6, &flags),
-        element(5, &size),
-        element(1, b"q"),
-        element(9, &values),
-    ];
-    let file = mat(&[element(14, &array.concat())]);
-    assert_eq!(
-        numbers(log("a.mat", &file, &mapping("q(:,1)", "q(:,2)"))),
-        (vec![1.0, 2.0, 3.0], vec![10.0, 20.0, 30.0])
-    );
-}
-
 #[test]
 fn files_of_matlab_4_are_refused_by_name() {
     let header = [0_u32, 3, 1, 0, 2].map(u32::to_le_bytes).concat();

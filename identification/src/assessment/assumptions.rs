@@ -243,16 +243,16 @@ pub(crate) fn unseen(checks: &[Check]) -> Vec<String> {
             .into_iter()
             .filter(|one| one.shift_deviations.is_finite());
         let each: Vec<String> = never.into_iter().chain(visible.map(limit)).collect();
-        (!each.is_empty()).then(|| format!("{}: {}", class.name(), each.join("; ")))
+        (!each.is_empty()).then(|| format!("{}: {}", class.name(), each.join(", ")))
     };
     FaultClass::ALL.iter().filter_map(sentence).collect()
 }
 
-/// Detection limit of one fault, with its harm.
+/// Detection limit of one fault with its harm, as in ``2 % of `left` (`zz_1` by 8 σ)``.
 fn limit(one: &Detectable) -> String {
     let of = match (one.name.as_str(), one.fault) {
         (_, FaultHypothesis::PotentialTerm(_)) => {
-            String::from(" of a potential, as of a constant force on a body,")
+            String::from(" of a potential, as of a constant force on a body")
         }
         (_, FaultHypothesis::Scales) => String::from(" of all drives"),
         ("", _) => String::new(),
@@ -279,7 +279,7 @@ fn limit(one: &Detectable) -> String {
         unit => format!("{} {unit}", significant(one.size, 2)),
     };
     format!(
-        "{size}{of} would shift `{}` by {shift_deviations:.0} σ",
+        "{size}{of} (`{}` by {shift_deviations:.0} σ)",
         one.parameter
     )
 }
@@ -334,15 +334,15 @@ mod tests {
             ),
         ];
         let expected = [
-            "zero of an encoder: 0.0091 rad of `left` would shift `zz_1` by 13 σ",
-            "scale of an encoder: 0.1 % of all drives would shift `zz_1` by 16 σ",
-            "ratio of a gear, with positions and torques of its drive: 2 % of `left` would shift `zz_1` by 8 σ",
-            "gain of one drive: 3 % of `left` would shift `zz_1` by 7 σ; 10 % of `right` would shift `zz_1` by 86 σ",
-            "delay of all torques: 0.28 ms would shift `zz_1` by 5 σ",
-            "delay of the torque of one drive: 3 ms of `right` would shift `zz_1` by 12 σ",
-            "smoothing of the torques: a mean over 12 ms would shift `zz_1` by 8 σ",
-            "sampling frequency: 100 % would shift `zz_1` by 200 σ",
-            "torque or force that the model lacks: 0.3 N m/rad at `left` with the position, as a spring would shift `zz_1` by 4 σ",
+            "zero of an encoder: 0.0091 rad of `left` (`zz_1` by 13 σ)",
+            "scale of an encoder: 0.1 % of all drives (`zz_1` by 16 σ)",
+            "ratio of a gear, with positions and torques of its drive: 2 % of `left` (`zz_1` by 8 σ)",
+            "gain of one drive: 3 % of `left` (`zz_1` by 7 σ), 10 % of `right` (`zz_1` by 86 σ)",
+            "delay of all torques: 0.28 ms (`zz_1` by 5 σ)",
+            "delay of the torque of one drive: 3 ms of `right` (`zz_1` by 12 σ)",
+            "smoothing of the torques: a mean over 12 ms (`zz_1` by 8 σ)",
+            "sampling frequency: 100 % (`zz_1` by 200 σ)",
+            "torque or force that the model lacks: 0.3 N m/rad at `left` with the position, as a spring (`zz_1` by 4 σ)",
         ];
         assert_eq!(unseen(&[check(CheckKind::Delay, all)]), expected);
     }
@@ -355,9 +355,7 @@ mod tests {
         ];
         assert_eq!(
             unseen(&[check(CheckKind::WrongGain, gains)]),
-            [
-                "gain of one drive: not detectable for `right`; 3 % of `left` would shift `zz_1` by 7 σ"
-            ]
+            ["gain of one drive: not detectable for `right`, 3 % of `left` (`zz_1` by 7 σ)"]
         );
     }
 

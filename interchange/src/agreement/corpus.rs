@@ -60,7 +60,7 @@ pub(super) fn mjcf() -> Vec<File> {
           <tendon class='main' active='true' tendon1='d' tendon2='e' polycoef='0 1'/>
         </equality>
         <tendon><fixed name='d' class='main' stiffness='0' damping='0' frictionloss='0' armature='0'><joint joint='j2'
-          coef='1'/></fixed><fixed name='e'><joint joint='j1' coef='2'/></fixed><spatial name='h'/></tendon>
+          coef='1'/></fixed><fixed name='e'><joint joint='j1' coef='2'/></fixed><spatial name='h'><site site='s'/><site site='t'/></spatial></tendon>
         <actuator>{actuators}{pulling}</actuator></mujoco>"
     );
     let included = "<mujocoinclude><option gravity='0 0 -9.81'/></mujocoinclude>";

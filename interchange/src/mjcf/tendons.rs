@@ -240,8 +240,11 @@ fn tendon(files: &Files, element: &Element, sites: &Sites, model: &Model) -> Ten
 
 /// Points of a spatial tendon on their bodies; `None` for another path, or for a fixed tendon.
 fn path(files: &Files, element: &Element, sites: &Sites) -> Option<Vec<(usize, Point3<f64>)>> {
+    if element.name == "fixed" {
+        return None;
+    }
     let has_other = ["geom", "pulley"].map(|tag| element.all(tag).next().is_some());
-    if element.name == "fixed" || has_other.contains(&true) {
+    if has_other.contains(&true) {
         return None;
     }
     let ends: Vec<&Element> = element.all("site").collect();

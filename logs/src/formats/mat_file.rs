@@ -52,22 +52,11 @@ pub(crate) fn open(file: String, medium: &ByteSource) -> Result<Arrays, Error> {
 }
 
 /// Adds an array under a name.
-///
-/// Simulink logs signals that are matrices as arrays n × m × samples: each sample becomes a row.
 fn push(arrays: &mut Arrays, name: &str, array: &Array) {
-    let size = array.size();
+    let rows = array.size().first().copied().unwrap_or(0);
     let values = values(array.data());
-    let by_sample = size.len() > 2;
-    let rows = if by_sample { size.last() } else { size.first() };
-    let rows = rows.copied().unwrap_or(0);
     let columns = values.len().checked_div(rows).unwrap_or(0);
-    if by_sample {
-        let column = |column: usize| values.iter().skip(column).step_by(columns).copied();
-        let by_column: Vec<f64> = (0..columns).flat_map(column).collect();
-        arrays.push(name, rows, columns, &by_column);
-    } else {
-        arrays.push(name, rows, columns, &values);
-    }
+    arrays.push(name, rows, columns, &values);
 }
 
 /// Real parts of an array, in MATLAB's column-major order.

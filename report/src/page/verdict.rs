@@ -183,7 +183,7 @@ fn lists(identification: &Identification) -> String {
     list(
         "unseen",
         "Detection limits",
-        "For each kind of fault: the most harmful one, at the size that nine of ten such data sets would reveal. A smaller fault shifts parameters in proportion:",
+        "For each kind of fault: the sizes that nine of ten such data sets would reveal, and the parameter that a fault of this size would shift most. A smaller fault shifts it in proportion:",
         &identification.unseen,
     ) + &list(
         "assumptions",

@@ -122,7 +122,7 @@ fn unseen(identification: &Identification) -> String {
         text.push('\n');
         line(
             &mut text,
-            "Detection limits of these data (--report lists all assumptions):",
+            "Faults that these data would not show, and what they would shift (--report lists all assumptions):",
         );
         for one in &identification.unseen {
             paragraph(&mut text, "  - ", one);

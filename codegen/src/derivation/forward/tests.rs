@@ -136,6 +136,10 @@ fn legs_close(name: &str, mechanism: &Mechanism) {
         for (index, leg) in mechanism.legs.iter().enumerate() {
             let end = target(leg.end.as_ref().expect("an end"), &frame);
             let q = &found[mechanism.leg_range(index)];
+            // The course of a cable depends on its pulley.
+            if leg.cable.is_some() {
+                continue;
+            }
             let gap = leg.closure_error(q, &end).amax();
             assert!(gap < CLOSED, "{name}, {}: open by {gap:e}", leg.name);
         }
