@@ -319,6 +319,16 @@ fn wrapped(radius: f64, across: f64, up: f64) -> f64 {
 }
 
 #[test]
+fn robots_with_cables_agree_with_finite_differences() {
+    for name in ["planar", "spatial"] {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots/cables");
+        let file = folder.join(format!("{name}.toml"));
+        let text = std::fs::read_to_string(file).expect("a description");
+        compare(&text);
+    }
+}
+
+#[test]
 fn the_wrapped_arc_is_part_of_the_length() {
     let robot = robot(&planar("25 mm"));
     let pose = [0.1, 0.02, 0.0];
