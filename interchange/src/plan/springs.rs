@@ -25,7 +25,7 @@ pub(super) fn between_points(files: &Files, network: &Network<'_>, bodies: &Bodi
     let mut names = Names::default();
     let springs = network.model.springs.iter().enumerate();
     springs
-        .filter_map(|(of, own)| spring(files, network, bodies, &mut names, (of, own)))
+        .filter_map(|(of, own)| spring(files, network, bodies, &mut names, of, own))
         .collect()
 }
 
@@ -34,7 +34,8 @@ fn spring(
     network: &Network<'_>,
     bodies: &Bodies,
     names: &mut Names,
-    (of, own): (usize, &PointSpring),
+    of: usize,
+    own: &PointSpring,
 ) -> Option<Spring> {
     let groups = own.bodies.map(|body| {
         let mut groups = network.groups.iter();
