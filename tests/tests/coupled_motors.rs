@@ -21,7 +21,7 @@ use overact_tests::support::sample::samples;
 use overact_tests::support::{
     Backend, Comparison, Evaluated, Failure, Sample, description, model_with,
 };
-use overact_tier::{by_tier, drawn};
+use overact_tier::{by_tier, drawn, of_many};
 
 /// Tolerances of functions of base parameters, whose regroupings may be numeric, and of others.
 const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
@@ -209,7 +209,7 @@ fn robots_with_differentials_belts_and_antagonists_agree() -> Result<(), Failure
 
 #[test]
 fn robots_of_the_library_agree_with_random_motors() -> Result<(), Failure> {
-    let all = by_tier([ROBOTS.to_vec(), [&ROBOTS[..], &MORE].concat()]);
+    let all = [&ROBOTS[..], &of_many(MORE)].concat();
     for stem in all {
         // The first seed whose motors determine the motion.
         let text = description(stem)?.text;
