@@ -44,7 +44,7 @@ pub use error::{ActuatorGroup, Actuators, Error, SampleError};
 pub use frame::{FrameFunction, FrameQuantity};
 pub use function::{Condition, Function};
 pub use limits::Limits;
-pub use parameter::StandardParameter;
+pub use parameter::{Effect, StandardParameter};
 pub use singular::{CLOSED, SINGULAR};
 pub use size::{Extent, Input, Sizes};
 

@@ -1,7 +1,7 @@
 //! Standard parameters of a body and its joint, and optional ones of a joint.
 //!
-//! The optional ones are the stiffness of a spring, friction that differs by direction, and
-//! friction that increases towards standstill or with a load.
+//! The optional ones are the stiffness of a spring, friction that differs by direction, friction
+//! quadratic in the velocity, and friction that increases towards standstill or with a load.
 
 /// A standard parameter, eq. (2); the order is that of the paper's χ, which ends with the offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -48,6 +48,50 @@ pub enum StandardParameter {
     Fst,
     /// Ratio of dry friction to a known load; dimensionless for a load in N m or N.
     Fl,
+    /// Friction quadratic in the velocity, N m s²/rad² or N s²/m².
+    Fq,
+}
+
+/// The part of the model to which a parameter belongs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effect {
+    /// The inertia of a body.
+    Body,
+    /// The inertia of a rotor with its gears.
+    Rotor,
+    /// A force against the motion of a joint.
+    Friction {
+        /// Exponent of the velocity: 0 for dry friction, 1 for viscous, 2 for quadratic friction.
+        exponent: u8,
+    },
+    /// A constant force.
+    Offset,
+    /// The force of a spring.
+    Spring,
+}
+
+/// All properties of a parameter.
+struct Properties {
+    name: &'static str,
+    effect: Effect,
+    /// Whether physically consistent values are nonnegative.
+    is_nonnegative: bool,
+    /// SI units for a joint that rotates, and for one that slides.
+    units: [&'static str; 2],
+}
+
+const fn properties(
+    name: &'static str,
+    effect: Effect,
+    is_nonnegative: bool,
+    units: [&'static str; 2],
+) -> Properties {
+    Properties {
+        name,
+        effect,
+        is_nonnegative,
+        units,
+    }
 }
 
 impl StandardParameter {
@@ -89,120 +133,99 @@ impl StandardParameter {
     /// The three friction parameters.
     pub const FRICTION: [Self; 3] = [Self::Fv, Self::Fs, Self::Off];
 
+    /// Listed parameters of a joint or motor that are not in [`Self::ALL`].
+    pub const OPTIONAL: [Self; 5] = [Self::FvPos, Self::FsPos, Self::FvNeg, Self::FsNeg, Self::Fq];
+
     /// The four parameters of friction that differs by direction; they replace [`Self::FRICTION`].
     pub const DIRECTED: [Self; 4] = [Self::FvPos, Self::FsPos, Self::FvNeg, Self::FsNeg];
+
+    const fn properties(self) -> Properties {
+        use Effect::{Body, Offset, Rotor, Spring};
+        const DRY: Effect = Effect::Friction { exponent: 0 };
+        const VISCOUS: Effect = Effect::Friction { exponent: 1 };
+        const QUADRATIC: Effect = Effect::Friction { exponent: 2 };
+        const INERTIA: [&str; 2] = ["kg m^2"; 2];
+        const MOMENT: [&str; 2] = ["kg m"; 2];
+        const FORCE: [&str; 2] = ["N m", "N"];
+        const PER_RATE: [&str; 2] = ["N m s/rad", "N s/m"];
+        const PER_SQUARE: [&str; 2] = ["N m s^2/rad^2", "N s^2/m^2"];
+        match self {
+            Self::Xx => properties("xx", Body, true, INERTIA),
+            Self::Xy => properties("xy", Body, false, INERTIA),
+            Self::Xz => properties("xz", Body, false, INERTIA),
+            Self::Yy => properties("yy", Body, true, INERTIA),
+            Self::Yz => properties("yz", Body, false, INERTIA),
+            Self::Zz => properties("zz", Body, true, INERTIA),
+            Self::Mx => properties("mx", Body, false, MOMENT),
+            Self::My => properties("my", Body, false, MOMENT),
+            Self::Mz => properties("mz", Body, false, MOMENT),
+            Self::M => properties("m", Body, true, ["kg"; 2]),
+            Self::Ia => properties("ia", Rotor, true, ["kg m^2", "kg"]),
+            Self::Fv => properties("fv", VISCOUS, true, PER_RATE),
+            Self::Fs => properties("fs", DRY, true, FORCE),
+            Self::Off => properties("off", Offset, false, FORCE),
+            Self::K => properties("k", Spring, false, ["N m/rad", "N/m"]),
+            Self::FvPos => properties("fv_pos", VISCOUS, true, PER_RATE),
+            Self::FsPos => properties("fs_pos", DRY, false, FORCE),
+            Self::FvNeg => properties("fv_neg", VISCOUS, true, PER_RATE),
+            Self::FsNeg => properties("fs_neg", DRY, false, FORCE),
+            Self::Fst => properties("fst", DRY, true, FORCE),
+            Self::Fl => properties("fl", DRY, true, ["1"; 2]),
+            Self::Fq => properties("fq", QUADRATIC, true, PER_SQUARE),
+        }
+    }
 
     /// Standard name, such as `zz`.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Xx => "xx",
-            Self::Xy => "xy",
-            Self::Xz => "xz",
-            Self::Yy => "yy",
-            Self::Yz => "yz",
-            Self::Zz => "zz",
-            Self::Mx => "mx",
-            Self::My => "my",
-            Self::Mz => "mz",
-            Self::M => "m",
-            Self::Ia => "ia",
-            Self::Fv => "fv",
-            Self::Fs => "fs",
-            Self::Off => "off",
-            Self::K => "k",
-            Self::FvPos => "fv_pos",
-            Self::FsPos => "fs_pos",
-            Self::FvNeg => "fv_neg",
-            Self::FsNeg => "fs_neg",
-            Self::Fst => "fst",
-            Self::Fl => "fl",
-        }
+        self.properties().name
     }
 
-    /// The parameter of this name, among those that a description lists; others have keys of their
-    /// own.
+    /// The parameters that a description lists by name; others have keys of their own.
+    pub fn listed() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().chain(Self::OPTIONAL)
+    }
+
+    /// The parameter of this name, among those that a description lists.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        let mut listed = Self::ALL.into_iter().chain(Self::DIRECTED);
-        listed.find(|p| p.name() == name)
+        Self::listed().find(|p| p.name() == name)
+    }
+
+    /// The part of the model to which it belongs.
+    #[must_use]
+    pub const fn effect(self) -> Effect {
+        self.properties().effect
     }
 
     /// Whether it is an inertial parameter of the body.
     #[must_use]
     pub const fn is_inertial(self) -> bool {
-        matches!(
-            self,
-            Self::Xx
-                | Self::Xy
-                | Self::Xz
-                | Self::Yy
-                | Self::Yz
-                | Self::Zz
-                | Self::Mx
-                | Self::My
-                | Self::Mz
-                | Self::M
-        )
+        matches!(self.effect(), Effect::Body)
     }
 
-    /// Whether it is friction that depends on the rate, so that its column changes when the rate
-    /// reverses.
+    /// Whether it is friction.
     #[must_use]
-    pub const fn follows_rate(self) -> bool {
-        self.is_viscous() || self.has_sign()
-    }
-
-    /// Whether it is viscous friction, proportional to the velocity.
-    #[must_use]
-    pub const fn is_viscous(self) -> bool {
-        matches!(self, Self::Fv | Self::FvPos | Self::FvNeg)
+    pub const fn is_friction(self) -> bool {
+        matches!(self.effect(), Effect::Friction { .. })
     }
 
     /// Whether it is friction that jumps when the velocity changes sign.
     #[must_use]
     pub const fn has_sign(self) -> bool {
-        matches!(
-            self,
-            Self::Fs | Self::FsPos | Self::FsNeg | Self::Fst | Self::Fl
-        )
+        matches!(self.effect(), Effect::Friction { exponent: 0 })
     }
 
     /// Whether physically consistent values are nonnegative.
     #[must_use]
     pub const fn is_nonnegative(self) -> bool {
-        matches!(
-            self,
-            Self::Xx
-                | Self::Yy
-                | Self::Zz
-                | Self::M
-                | Self::Ia
-                | Self::Fv
-                | Self::Fs
-                | Self::FvPos
-                | Self::FvNeg
-                | Self::Fst
-                | Self::Fl
-        )
+        self.properties().is_nonnegative
     }
 
     /// SI unit; `slides` is true for a prismatic joint.
     #[must_use]
     pub const fn unit(self, slides: bool) -> &'static str {
-        match self {
-            Self::Xx | Self::Xy | Self::Xz | Self::Yy | Self::Yz | Self::Zz => "kg m^2",
-            Self::Mx | Self::My | Self::Mz => "kg m",
-            Self::M => "kg",
-            Self::Ia if slides => "kg",
-            Self::Ia => "kg m^2",
-            Self::Fv | Self::FvPos | Self::FvNeg if slides => "N s/m",
-            Self::Fv | Self::FvPos | Self::FvNeg => "N m s/rad",
-            Self::Fs | Self::Off | Self::FsPos | Self::FsNeg | Self::Fst if slides => "N",
-            Self::Fs | Self::Off | Self::FsPos | Self::FsNeg | Self::Fst => "N m",
-            Self::Fl => "1",
-            Self::K if slides => "N/m",
-            Self::K => "N m/rad",
-        }
+        let [rotating, sliding] = self.properties().units;
+        if slides { sliding } else { rotating }
     }
 }

@@ -1,4 +1,4 @@
-//! Direction-dependent friction, Stribeck friction and known torques, from description to
+//! Direction-dependent, Stribeck, load-dependent and quadratic friction, and known torques, from description to
 //! identification.
 
 use overact_identification::{Estimator, Identification, Stage};
@@ -20,7 +20,7 @@ known = "1.5 N m * sin(q) + 0.4 N m"
 type = "revolute"
 d = "0.3 m"
 actuated = true
-parameters = ["zz", "mx", "my", "fv", "fs", "off"]
+parameters = ["zz", "mx", "my", "fv", "fs", "off", "fq"]
 stribeck = "0.4 rad/s"
 friction_load = "12 N m * cos(q + 30 deg)"
 
@@ -61,6 +61,7 @@ fs_2 = 0.6
 off_2 = 0.1
 fst_2 = 0.5
 fl_2 = 0.05
+fq_2 = 0.15
 m_3 = 1.0
 fv_pos_3 = 0.2
 fs_pos_3 = 0.3
@@ -123,7 +124,7 @@ fn errors(result: &Identification) -> (Vec<String>, f64, f64) {
 fn friction_of_every_kind_is_identified_under_default_settings() {
     let result = identified(ARM);
     let (names, deviations, percent) = errors(&result);
-    for name in ["fv_neg_1", "fst_2", "fl_2", "fv_pos_3"] {
+    for name in ["fv_neg_1", "fst_2", "fl_2", "fq_2", "fv_pos_3"] {
         assert!(names.iter().any(|one| one == name), "{names:?}");
     }
     // The constant part of the coupled joint's friction, the difference of its coefficients, is
@@ -140,9 +141,9 @@ fn friction_of_every_kind_is_identified_under_default_settings() {
 fn parameters_of_motors_are_told_in_front_of_their_gears() {
     let motors = "[[leg.arm.motor]]\nname = \"first\"\nturns = \"q1\"\nratio = -20\n\
                   [[leg.arm.motor]]\nname = \"both\"\nturns = \"q1 + 2*q2\"\nratio = 50\n\
-                  parameters = [\"ia\", \"friction by direction\"]\nstribeck = \"1 rad/s\"\n\n[[place]]";
+                  parameters = [\"ia\", \"friction by direction\", \"fq\"]\nstribeck = \"1 rad/s\"\n\n[[place]]";
     let values = "[experiment.parameters]\nia_both = 0.2\nfv_pos_both = 0.3\nfs_pos_both = 0.8\n\
-                  fv_neg_both = 0.5\nfs_neg_both = 0.6\nfst_both = 0.4\n";
+                  fv_neg_both = 0.5\nfs_neg_both = 0.6\nfst_both = 0.4\nfq_both = 0.05\n";
     let text = ARM.replacen("[[place]]", motors, 1);
     let text = text.replacen("[experiment.parameters]\n", values, 1);
     // Two joints determine friction of three rates only.
@@ -169,6 +170,7 @@ fn parameters_of_motors_are_told_in_front_of_their_gears() {
     at("fv_neg_1", "first", 400.0, "N m s/rad");
     at("fv_pos_both", "both", 2500.0, "N m s/rad");
     at("fst_both", "both", 50.0, "N m");
+    at("fq_both", "both", 125_000.0, "N m s^2/rad^2");
     let of_joint = result.motors.iter().any(|one| one.name.ends_with("_2"));
     assert!(!of_joint, "no motor turns the second joint alone");
 }

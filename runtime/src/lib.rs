@@ -75,8 +75,9 @@ mod zeroed_then_fill;
 
 pub use model::{BaseParameter, Body, Info, Model, Parameter};
 pub use overact_core::{
-    ActuatorGroup, Actuators, Code, Columns, Condition, Error, Explanation, Extent, FrameFunction,
-    FrameQuantity, Function, Input, SINGULAR, SampleError, Sizes, StandardParameter, limits,
+    ActuatorGroup, Actuators, Code, Columns, Condition, Effect, Error, Explanation, Extent,
+    FrameFunction, FrameQuantity, Function, Input, SINGULAR, SampleError, Sizes, StandardParameter,
+    limits,
 };
 #[cfg(feature = "macro")]
 pub use overact_macros::redundant_robot;

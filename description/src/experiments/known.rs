@@ -49,7 +49,7 @@ pub(crate) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Vec<(String, f
             item.context.report(error.help(help));
         };
         match one.symbol {
-            friction if friction.follows_rate() || friction == P::Off => report(
+            friction if friction.is_friction() || friction == P::Off => report(
                 format!(
                     "`{}` is friction or an offset, which are never known exactly",
                     one.name.value

@@ -3,14 +3,13 @@
 use crate::diagnostic::Code;
 use crate::expressions::dimension::Dimension;
 use crate::robot::model::JointKind;
-use crate::robot::parameter::dimension;
 use crate::toml_text::reader::Item;
 use crate::toml_text::scope::Scope;
 use overact_core::StandardParameter;
 
 /// Dimension of an actuator's torque or force.
 pub(crate) fn effort(kind: JointKind) -> Dimension {
-    dimension(StandardParameter::Fs, kind)
+    Dimension::of_parameter(StandardParameter::Fs, kind == JointKind::Prismatic)
 }
 
 /// One value for all actuators, or a list with one per actuator.

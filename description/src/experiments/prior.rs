@@ -5,7 +5,7 @@ use crate::experiments::experiment::{TrueParameter, parameters};
 use crate::experiments::held::{self, HeldName};
 use crate::robot::inventory::Inventory;
 use crate::toml_text::reader::Item;
-use overact_core::StandardParameter;
+use overact_core::{Effect, StandardParameter};
 
 /// Prior knowledge of the parameters.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -43,18 +43,18 @@ pub(crate) fn read(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Prior> 
 ///
 /// Those of `held` bodies may be zero.
 fn values(item: &Item<'_, '_>, robot: &Inventory<'_>, held: &[HeldName]) -> Vec<TrueParameter> {
-    use StandardParameter as P;
     let all = parameters(item, robot);
     for one in &all {
         if one.value == 0.0 && held.iter().any(|own| own.parameter == one.name.value) {
             continue;
         }
-        let words = match one.symbol {
-            P::M => "a body's mass",
-            P::Xx | P::Yy | P::Zz => "a body's moment of inertia",
-            P::Ia => "a rotor's inertia",
-            P::Fv | P::Fs => "a coefficient of friction",
-            _ => continue,
+        let words = match one.symbol.effect() {
+            _ if !one.symbol.is_nonnegative() => continue,
+            Effect::Body if one.symbol == StandardParameter::M => "a body's mass",
+            Effect::Body => "a body's moment of inertia",
+            Effect::Rotor => "a rotor's inertia",
+            Effect::Friction { .. } => "a coefficient of friction",
+            Effect::Offset | Effect::Spring => continue,
         };
         if one.value <= 0.0 {
             let message = format!("{words} must be positive, but `{}` is not", one.name.value);

@@ -1,6 +1,7 @@
 //! Physical dimensions and the names of units.
 
 use crate::expressions::scalar::Scalar;
+use overact_core::StandardParameter;
 use overact_exact::{Angle, Number, Ratio};
 
 /// Exponents of metre, kilogram, second, ampere and radian.
@@ -31,9 +32,11 @@ impl Dimension {
     pub(crate) const ANGULAR_VISCOSITY: Self = Self([2, 1, -1, 0, -1]);
     pub(crate) const LINEAR_STIFFNESS: Self = Self([0, 1, -2, 0, 0]);
     pub(crate) const ANGULAR_STIFFNESS: Self = Self([2, 1, -2, 0, -1]);
+    const LINEAR_DRAG: Self = Self([-1, 1, 0, 0, 0]);
+    const ANGULAR_DRAG: Self = Self([2, 1, 0, 0, -2]);
 
     /// Names of dimensions with their article, and units.
-    const NAMES: [(Self, &'static str, &'static str); 20] = [
+    const NAMES: [(Self, &'static str, &'static str); 22] = [
         (Self::LENGTH, "a length", "m"),
         (Self::MASS, "a mass", "kg"),
         (Self::TIME, "a time", "s"),
@@ -58,6 +61,8 @@ impl Dimension {
         (Self::ANGULAR_VISCOSITY, "a viscous friction", "N m s/rad"),
         (Self::LINEAR_STIFFNESS, "a stiffness", "N/m"),
         (Self::ANGULAR_STIFFNESS, "a stiffness", "N m/rad"),
+        (Self::LINEAR_DRAG, "a quadratic friction", "N s^2/m^2"),
+        (Self::ANGULAR_DRAG, "a quadratic friction", "N m s^2/rad^2"),
     ];
 
     /// Dimension of a product; `None` on overflow of an exponent.
@@ -94,6 +99,13 @@ impl Dimension {
         let [m, kg, s, a, _] = expected.0;
         let without_angle = [m, kg, s, a] == [self.0[0], self.0[1], self.0[2], self.0[3]];
         self == Self::NONE || self == expected || (kg != 0 && without_angle)
+    }
+
+    /// Dimension of a standard parameter of a joint or body; `slides` for a prismatic joint.
+    pub(crate) fn of_parameter(parameter: StandardParameter, slides: bool) -> Self {
+        let own = parameter.unit(slides);
+        let found = Self::NAMES.iter().find(|(.., unit)| *unit == own);
+        found.map_or(Self::NONE, |(dimension, ..)| *dimension)
     }
 
     fn known(self) -> Option<(&'static str, &'static str)> {

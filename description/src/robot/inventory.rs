@@ -4,7 +4,6 @@ use crate::expressions::dimension::Dimension;
 use crate::robot::actuator_names::ActuatorNames;
 use crate::robot::joint;
 use crate::robot::model::{JointKind, Leg, Motion, Motor, Payload, Platform, Spanned, actuators};
-use crate::robot::parameter::dimension;
 use crate::robot::point_spring::PointSpring;
 use crate::toml_text::scope::Scope;
 use overact_core::StandardParameter;
@@ -95,7 +94,7 @@ impl Inventory<'_> {
                         format!("{}_{}_{}", symbol.name(), joint.name.value, leg.name.value)
                     };
                     let dimension = joint.formula_of(*symbol).map_or_else(
-                        || dimension(*symbol, joint.kind.value),
+                        || of_kind(*symbol, joint.kind.value),
                         |spring| spring.dimension,
                     );
                     all.push((name, body, *symbol, dimension));
@@ -104,7 +103,7 @@ impl Inventory<'_> {
         }
         let free = |body: Body, name: &str, symbols: &[StandardParameter]| {
             let own = symbols.iter().map(|symbol| {
-                let dimension = dimension(*symbol, JointKind::Fixed);
+                let dimension = of_kind(*symbol, JointKind::Fixed);
                 (
                     format!("{}_{name}", symbol.name()),
                     body,
@@ -127,7 +126,7 @@ impl Inventory<'_> {
         for (index, motor) in self.motors.iter().enumerate() {
             let own = motor.parameters.iter().map(|symbol| {
                 let name = self.motor_parameter(motor, *symbol);
-                let dimension = dimension(*symbol, motor.kind);
+                let dimension = of_kind(*symbol, motor.kind);
                 (name, Body::Motor(index), *symbol, dimension)
             });
             all.extend(own);
@@ -205,6 +204,10 @@ pub fn independent_joints(legs: &[Leg]) -> Vec<(String, &crate::robot::model::Jo
         }
     }
     all
+}
+
+fn of_kind(parameter: StandardParameter, kind: JointKind) -> Dimension {
+    Dimension::of_parameter(parameter, kind == JointKind::Prismatic)
 }
 
 fn platform_coordinates(motion: Motion) -> Vec<(String, Dimension)> {

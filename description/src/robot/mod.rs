@@ -17,7 +17,6 @@ pub(crate) mod leg;
 pub(crate) mod model;
 pub(crate) mod motion;
 pub(crate) mod motor;
-pub(crate) mod parameter;
 pub(crate) mod parameters;
 pub(crate) mod payload;
 pub(crate) mod platform;

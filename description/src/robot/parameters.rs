@@ -32,7 +32,7 @@ impl Owner {
     /// Whether a parameter is possible.
     fn can_have(self, parameter: P) -> bool {
         let moves = !matches!(self, Self::FreeBody | Self::Joint(JointKind::Fixed));
-        self.all().contains(&parameter) || moves && P::DIRECTED.contains(&parameter)
+        self.all().contains(&parameter) || moves && P::OPTIONAL.contains(&parameter)
     }
 
     /// The default parameters of a body.
@@ -86,7 +86,7 @@ impl Item<'_, '_> {
                     } else {
                         "a motor"
                     },
-                    "its parameters are \"ia\", \"fv\", \"fs\", \"off\" and those of \"friction by direction\"",
+                    "its parameters are \"ia\", \"fv\", \"fs\", \"off\", \"fq\" and those of \"friction by direction\"",
                 ),
             };
             let message = format!("{body} has no parameter `{}`", wrong.name());
@@ -109,12 +109,9 @@ impl Item<'_, '_> {
             return;
         }
         let known = || {
-            P::ALL.iter().chain(&P::DIRECTED).map(|p| p.name()).chain([
-                "all",
-                "inertia",
-                "friction",
-                "friction by direction",
-            ])
+            P::listed()
+                .map(P::name)
+                .chain(["all", "inertia", "friction", "friction by direction"])
         };
         let help = did_you_mean(symbol, known());
         let list = || format!("known: {}", known().collect::<Vec<_>>().join(", "));

@@ -263,6 +263,7 @@ fn every_word_of_a_value_is_documented() {
         "k",
         "fst",
         "fl",
+        "fq",
         "all",
         "revolute",
         "prismatic",

@@ -14,6 +14,12 @@ fn friction_by_direction_takes_the_place_of_the_symmetric() {
     assert_eq!(joint.parameters, own);
     let velocity = joint.stribeck.expect("a velocity").value();
     assert!((velocity - 3_f64.to_radians()).abs() < 1e-15);
+    // Quadratic friction is added to either.
+    let robot = good(&single("", "parameters = [\"friction\", \"fq\"]"));
+    assert_eq!(
+        robot.legs[0].joints[0].parameters,
+        [P::Fv, P::Fs, P::Off, P::Fq]
+    );
     // Parts of it may be combined with symmetric friction: the columns are independent.
     let robot = good(&single(
         "",

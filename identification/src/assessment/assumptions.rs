@@ -85,7 +85,7 @@ pub(crate) fn assumptions(
         ));
     }
     let mut friction = columns.as_slice().iter();
-    if friction.any(|column| column.symbol.follows_rate()) {
+    if friction.any(|column| column.symbol.is_friction()) {
         all.push(String::from(
             "friction is viscous and Coulomb friction as in the model at all speeds, also at those that the runs do not reach",
         ));

@@ -15,32 +15,30 @@ pub(super) type Inertia = SVector<f64, 10>;
 /// A matrix over the ten inertial parameters.
 pub(super) type Metric = SMatrix<f64, 10, 10>;
 
-/// Rows and columns of P that contain a parameter, with its factors.
-fn places(parameter: StandardParameter) -> &'static [(usize, usize, f64)] {
-    use StandardParameter as P;
-    match parameter {
-        // ∫x² = (yy + zz - xx)/2, and cyclic permutations.
-        P::Xx => &[(0, 0, -0.5), (1, 1, 0.5), (2, 2, 0.5)],
-        P::Yy => &[(0, 0, 0.5), (1, 1, -0.5), (2, 2, 0.5)],
-        P::Zz => &[(0, 0, 0.5), (1, 1, 0.5), (2, 2, -0.5)],
-        // xy = -∫x y, and cyclic permutations.
-        P::Xy => &[(0, 1, -1.0), (1, 0, -1.0)],
-        P::Xz => &[(0, 2, -1.0), (2, 0, -1.0)],
-        P::Yz => &[(1, 2, -1.0), (2, 1, -1.0)],
-        P::Mx => &[(0, 3, 1.0), (3, 0, 1.0)],
-        P::My => &[(1, 3, 1.0), (3, 1, 1.0)],
-        P::Mz => &[(2, 3, 1.0), (3, 2, 1.0)],
-        P::M => &[(3, 3, 1.0)],
-        P::Ia | P::Fv | P::Fs | P::Off | P::K => &[],
-        P::FvPos | P::FsPos | P::FvNeg | P::FsNeg | P::Fst | P::Fl => &[],
-    }
-}
+/// Rows and columns of P that contain each parameter, with its factors.
+const PLACES: [&[(usize, usize, f64)]; 10] = [
+    // xx: ∫x² = (yy + zz - xx)/2, and cyclic permutations.
+    &[(0, 0, -0.5), (1, 1, 0.5), (2, 2, 0.5)],
+    // xy = -∫x y, and cyclic permutations.
+    &[(0, 1, -1.0), (1, 0, -1.0)],
+    &[(0, 2, -1.0), (2, 0, -1.0)],
+    // yy
+    &[(0, 0, 0.5), (1, 1, -0.5), (2, 2, 0.5)],
+    &[(1, 2, -1.0), (2, 1, -1.0)],
+    // zz
+    &[(0, 0, 0.5), (1, 1, 0.5), (2, 2, -0.5)],
+    // First moments and mass.
+    &[(0, 3, 1.0), (3, 0, 1.0)],
+    &[(1, 3, 1.0), (3, 1, 1.0)],
+    &[(2, 3, 1.0), (3, 2, 1.0)],
+    &[(3, 3, 1.0)],
+];
 
 /// ∂P/∂χ for the ten parameters.
 fn directions() -> [Matrix4<f64>; 10] {
-    StandardParameter::INERTIA.map(|parameter| {
+    PLACES.map(|places| {
         let mut direction = Matrix4::zeros();
-        for &(row, column, factor) in places(parameter) {
+        for &(row, column, factor) in places {
             direction[(row, column)] = factor;
         }
         direction

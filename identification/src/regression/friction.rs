@@ -11,7 +11,7 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use overact::Code;
-use overact::{Columns, Function, Model, StandardParameter};
+use overact::{Columns, Effect, Function, Model, StandardParameter};
 
 use super::states::{States, random_states};
 use overact_logs::{Error, Problem};
@@ -84,7 +84,7 @@ fn part(rate: f64, symbol: StandardParameter) -> f64 {
 
 /// Motion and regressor on random states, to recognise the rate u of a friction parameter.
 ///
-/// The power of friction is vᵀ W_fv = u² and vᵀ W_fs = |u|, or that of one direction.
+/// The power of friction is vᵀ W_fv = u², vᵀ W_fs = |u| and vᵀ W_fq = |u|³, or that of one direction.
 struct FrictionPower {
     samples: usize,
     dof: usize,
@@ -166,10 +166,10 @@ impl FrictionPower {
     /// The part of u that affects a friction column, at a state.
     fn speed(&self, sample: usize, column: usize, symbol: StandardParameter) -> f64 {
         let power = self.power(true, sample, column).max(0.0);
-        if symbol.is_viscous() {
-            (power / SLOW).sqrt()
-        } else {
-            power
+        match symbol.effect() {
+            Effect::Friction { exponent: 1 } => (power / SLOW).sqrt(),
+            Effect::Friction { exponent: 2 } => (power / (SLOW * SLOW)).cbrt(),
+            _ => power,
         }
     }
 
@@ -259,7 +259,7 @@ pub(super) fn friction_rates(model: &dyn Model, seed: u64) -> Result<Vec<Option<
     let mut found: Vec<Option<Rate>> = vec![None; info.parameters.len()];
     for (column, parameter) in info.parameters.iter().enumerate() {
         let symbol = parameter.symbol;
-        if !symbol.follows_rate() {
+        if !symbol.is_friction() {
             continue;
         }
         let own = |joint: usize| Rate::new(vec![(joint, 1.0)]);

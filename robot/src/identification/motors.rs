@@ -1,6 +1,6 @@
 //! Drive parameters on the motor side, from the gear ratios of the description.
 
-use overact::StandardParameter;
+use overact::{Effect, StandardParameter};
 use overact_codegen::description::{Description, Joint};
 use overact_identification::{Estimate, Estimator, MotorParameter, ParameterEstimate, Stage};
 
@@ -71,13 +71,12 @@ fn of(
     let at_motor = |one: &ParameterEstimate| {
         let symbol = { owner.parameters.iter() }
             .find(|symbol| one.name == format!("{}_{}", symbol.name(), owner.name))?;
-        let (divisor, unit) = match symbol.name() {
-            "ia" => (ratio * ratio, "kg m^2"),
-            _ if symbol.is_viscous() => (ratio * ratio, "N m s/rad"),
-            "off" => (ratio, "N m"),
-            "fl" => return None,
-            _ if symbol.has_sign() => (ratio.abs(), "N m"),
-            _ => return None,
+        let divisor = match symbol.effect() {
+            _ if *symbol == StandardParameter::Fl => return None,
+            Effect::Rotor => ratio * ratio,
+            Effect::Friction { exponent } => ratio.abs().powi(1 + i32::from(exponent)),
+            Effect::Offset => ratio,
+            Effect::Body | Effect::Spring => return None,
         };
         Some(MotorParameter {
             motor: motor.to_owned(),
@@ -85,7 +84,7 @@ fn of(
             ratio,
             value: one.value / divisor,
             deviation: one.correlated_standard_deviation / divisor.abs(),
-            unit: unit.to_owned(),
+            unit: symbol.unit(false).to_owned(),
         })
     };
     estimates.iter().filter_map(at_motor).collect()

@@ -7,7 +7,7 @@
 use super::closure::State;
 use super::mechanism::{Mechanism, Motor};
 use super::newton_euler::{friction, sign};
-use super::parameters::{BODY, INERTIAL, motor_start};
+use super::parameters::{BODY, INERTIAL, QUADRATIC, motor_start};
 use nalgebra::{DMatrix, DVector};
 
 /// Step of the differences, m and rad.
@@ -43,7 +43,7 @@ pub fn transmission(mechanism: &Mechanism) -> DMatrix<f64> {
     all
 }
 
-/// Torque at a motor for the parameters [… ia fv fs off k fv_pos fs_pos fv_neg fs_neg fst fl].
+/// Torque at a motor for the parameters [… ia fv fs off k fv_pos fs_pos fv_neg fs_neg fst fl fq].
 fn torque(motor: &Motor, state: &State, parameters: &[f64]) -> f64 {
     let (rate, growth) = (position(motor, &state.qd), position(motor, &state.qdd));
     let own = &parameters[INERTIAL..BODY];
@@ -52,6 +52,7 @@ fn torque(motor: &Motor, state: &State, parameters: &[f64]) -> f64 {
         + own[2] * sign(rate)
         + own[3]
         + friction(rate, &own[5..], motor.stribeck)
+        + parameters[QUADRATIC] * rate * rate.abs()
 }
 
 /// Adds the columns of the motors' parameters to a regressor.

@@ -18,7 +18,7 @@ use super::elements::add_columns;
 use super::kinematics::BodyMotion;
 use super::mechanism::{JointKind, Leg, Mechanism};
 use super::motors;
-use super::parameters::{BODY, INERTIAL, element_start, leg_start, platform_start};
+use super::parameters::{BODY, INERTIAL, QUADRATIC, element_start, leg_start, platform_start};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// A force and the moment about the origin of the body's frame, in the base frame.
@@ -129,7 +129,8 @@ fn leg_torques(
                     .load
                     .as_ref()
                     .map_or(0.0, |load| load.torque(positions[j]).abs())
-                * sign(rates[j]);
+                * sign(rates[j])
+            + own(j)[QUADRATIC] * rates[j] * rates[j].abs();
         let spring = joint
             .spring
             .as_ref()

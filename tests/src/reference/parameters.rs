@@ -1,8 +1,8 @@
 //! Layout and names of the standard parameters χ.
 //!
-//! A leg body has 21 parameters: those of (2) and (5), the coefficient of its joint's spring, and
-//! friction by direction, at standstill and by load: [xx xy xz yy yz zz mx my mz m ia fv fs off k
-//! fv_pos fs_pos fv_neg fs_neg fst fl]. Platform and payload have the first ten. Inertial
+//! A leg body has 22 parameters: those of (2) and (5), the coefficient of its joint's spring, and
+//! friction by direction, at standstill, by load and by the square of the rate: [xx xy xz yy yz zz mx my mz m ia fv fs off k
+//! fv_pos fs_pos fv_neg fs_neg fst fl fq]. Platform and payload have the first ten. Inertial
 //! parameters are about the origin of the body's frame, in its axes. Columns are ordered by leg,
 //! joint and parameter; coefficients of elements between two points and parameters of motors come
 //! last.
@@ -10,12 +10,14 @@
 use super::mechanism::Mechanism;
 
 /// Symbols of a leg body's parameters, in column order.
-pub const SYMBOLS: [&str; 21] = [
+pub const SYMBOLS: [&str; 22] = [
     "xx", "xy", "xz", "yy", "yz", "zz", "mx", "my", "mz", "m", "ia", "fv", "fs", "off", "k",
-    "fv_pos", "fs_pos", "fv_neg", "fs_neg", "fst", "fl",
+    "fv_pos", "fs_pos", "fv_neg", "fs_neg", "fst", "fl", "fq",
 ];
 /// Number of parameters of a leg body.
-pub const BODY: usize = 21;
+pub const BODY: usize = 22;
+/// Place of quadratic friction among the parameters of a leg body or motor.
+pub const QUADRATIC: usize = 21;
 /// Number of inertial parameters, those of the platform and of the payload.
 pub const INERTIAL: usize = 10;
 /// Place of the coefficient of a joint's spring among the parameters of its body.

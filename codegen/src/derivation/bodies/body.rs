@@ -101,14 +101,32 @@ impl<'a> BodyMotion<'a> {
             P::Mx => first(0),
             P::My => first(1),
             P::Mz => first(2),
-            P::Ia | P::Fv | P::Fs | P::Off | P::K => Wrench::zero(arena),
-            P::FvPos | P::FsPos | P::FvNeg | P::FsNeg | P::Fst | P::Fl => Wrench::zero(arena),
             _ => Wrench {
                 force: zero,
                 moment: second_moment(arena, parameter, self.omega, self.alpha),
             },
         }
     }
+}
+
+/// Row and column in the matrix of second moments, first moments (last column) and mass.
+const PLACES: [(usize, usize); 10] = [
+    (0, 0),
+    (0, 1),
+    (0, 2),
+    (1, 1),
+    (1, 2),
+    (2, 2),
+    (0, 3),
+    (1, 3),
+    (2, 3),
+    (3, 3),
+];
+
+/// Place of an inertial parameter; `None` for other parameters.
+pub(crate) fn place(parameter: StandardParameter) -> Option<(usize, usize)> {
+    let mut all = StandardParameter::INERTIA.into_iter().zip(PLACES);
+    all.find_map(|(one, place)| (one == parameter).then_some(place))
 }
 
 /// Moment in a body's axes per unit of a second moment: h(ω̇) + ω × h(ω), with the angular momentum
@@ -120,15 +138,8 @@ pub(crate) fn second_moment<'a>(
     omega: Vector3<'a>,
     alpha: Vector3<'a>,
 ) -> Vector3<'a> {
-    use StandardParameter as P;
-    let (i, j) = match parameter {
-        P::Xx => (0, 0),
-        P::Xy => (0, 1),
-        P::Xz => (0, 2),
-        P::Yy => (1, 1),
-        P::Yz => (1, 2),
-        P::Zz => (2, 2),
-        _ => return Vector3::zero(arena),
+    let Some((i, j)) = place(parameter).filter(|(_, j)| *j < 3) else {
+        return Vector3::zero(arena);
     };
     let momentum = |w: Vector3<'a>| {
         let mut h = Vector3::zero(arena);

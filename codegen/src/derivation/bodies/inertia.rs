@@ -1,6 +1,6 @@
 //! Mass, first moment and inertia of rigidly connected bodies about a frame's origin.
 
-use super::body::second_moment;
+use super::body::{place, second_moment};
 use crate::cas::{Arena, Expr, Matrix3, Vector3};
 use crate::derivation::kinematics::spatial::{SpatialMotion, Wrench};
 use crate::derivation::kinematics::turn::Turn;
@@ -43,26 +43,15 @@ impl<'a> Inertia<'a> {
         values: &[(BodyParameter, Expr<'a>)],
         own: &dyn Fn(BodyParameter) -> Option<StandardParameter>,
     ) -> Self {
-        use StandardParameter as P;
         let mut sum = Self::zero(arena);
         for (parameter, value) in values {
-            let (i, j) = match own(*parameter) {
-                Some(P::M) => {
-                    sum.mass = sum.mass + *value;
-                    continue;
-                }
-                Some(P::Mx) => (0, 3),
-                Some(P::My) => (1, 3),
-                Some(P::Mz) => (2, 3),
-                Some(P::Xx) => (0, 0),
-                Some(P::Xy) => (0, 1),
-                Some(P::Xz) => (0, 2),
-                Some(P::Yy) => (1, 1),
-                Some(P::Yz) => (1, 2),
-                Some(P::Zz) => (2, 2),
-                Some(P::Ia | P::Fv | P::Fs | P::Off | P::K) | None => continue,
-                Some(P::FvPos | P::FsPos | P::FvNeg | P::FsNeg | P::Fst | P::Fl) => continue,
+            let Some((i, j)) = own(*parameter).and_then(place) else {
+                continue;
             };
+            if (i, j) == (3, 3) {
+                sum.mass = sum.mass + *value;
+                continue;
+            }
             if j == 3 {
                 sum.first.0[i] = sum.first.0[i] + *value;
                 continue;

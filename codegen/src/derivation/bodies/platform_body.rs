@@ -130,7 +130,6 @@ impl<'a> PlatformBody<'a> {
             P::Mx => first(0),
             P::My => first(1),
             P::Mz => first(2),
-            P::Ia | P::Fv | P::Fs | P::Off => Wrench::zero(arena),
             _ => {
                 let moment = second_moment(arena, parameter, self.omega, self.alpha);
                 Wrench {
@@ -179,7 +178,6 @@ impl<'a> PlatformBody<'a> {
                 P::Mx => first(0),
                 P::My => first(1),
                 P::Mz => first(2),
-                P::Ia | P::Fv | P::Fs | P::Off => arena.zero(),
                 _ => {
                     let moment = second_moment(arena, parameter, self.omega, self.alpha);
                     moment.dot(into(partial.angular))

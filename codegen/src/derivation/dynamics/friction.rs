@@ -38,6 +38,7 @@ pub(crate) fn friction<'a>(
     let one = || arena.one();
     Some(match symbol {
         P::Fv => rate(),
+        P::Fq => rate() * magnitude(rate()),
         P::Fs => rate().sign(),
         P::FvPos => (rate() + magnitude(rate())) * half(),
         P::FvNeg => (rate() - magnitude(rate())) * half(),

@@ -116,6 +116,20 @@ impl PositionRange {
 }
 
 impl Shape {
+    /// Keys of a joint with which the model has such a torque; empty if there are none.
+    pub(crate) const fn keys(self) -> &'static str {
+        match self {
+            Self::Velocity => " (`fv` in a joint's `parameters`)",
+            Self::Sign => " (`fs` in a joint's `parameters`)",
+            Self::Speed => " (\"friction by direction\" in a joint's `parameters`)",
+            Self::Drag => " (`fq` in a joint's `parameters`)",
+            Self::Acceleration => " (`ia` in a joint's `parameters`)",
+            Self::Position => " (`spring` of a joint)",
+            Self::Load => " (`friction_load` of a joint, or `gear_friction`)",
+            _ => "",
+        }
+    }
+
     /// Name in a sentence.
     pub(crate) const fn words(self) -> &'static str {
         match self {

@@ -279,11 +279,12 @@ impl Finding {
         };
         let size = size.trim_end();
         format!(
-            "the {} depends on {} beyond the model{size} ({:.1} standard deviations), {}. Add the missing term to the description, or look for other differences from it",
+            "the {} depends on {} beyond the model{size} ({:.1} standard deviations), {}. Add the missing term to the description{}, or look for other differences from it",
             self.quantity,
             shape.words(),
             self.strength,
-            self.consequence
+            self.consequence,
+            shape.keys()
         )
     }
 
