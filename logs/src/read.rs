@@ -140,7 +140,7 @@ fn of_arrays(name: &str, arrays: &[Array<'_>], mapping: &Mapping) -> Result<File
         let (rows, columns) = array.shape;
         table.push(array.name, rows, columns, array.values);
     }
-    let tables = vec![Table::Arrays(table)];
+    let tables = vec![Table::new(table)];
     Files::of_tables(name.to_owned(), tables, vec![1], mapping, None)
 }
 
@@ -357,7 +357,7 @@ impl Notes<'_> {
     /// All notes in one; `None` without any.
     fn joined(self, files: &Files) -> Option<String> {
         let range = files.range.as_ref().map(|range| range.note.clone());
-        let of_files = files.tables.first().and_then(Table::note);
+        let of_files = files.tables.first().and_then(|table| table.note());
         let notes: Vec<String> = { range.into_iter().chain(of_files) }
             .chain(self.gaps)
             .chain(self.resampled)

@@ -6,7 +6,7 @@ super::codes! {
         cure "Check the path, and wait until the program that writes the log has closed it."
     LOG_FORMAT 302 "an unknown or broken file format"
         cause "The format is unknown or left out of this build, or the file is damaged or incomplete."
-        cure "Use CSV, MATLAB v5, .npy, .npz or Parquet, build with the feature that the help names (mcap, hdf5), or copy the file again."
+        cure "Use a format of `docs/logs.md`, build with the feature that the help names (mcap, hdf5), or copy the file again."
     LOG_COLUMNS 303 "columns that the log does not have"
         cause "[data] names columns, variables or topics that the file does not have. Without [data], the log must have the columns time, q_ACTUATOR, tau_ACTUATOR."
         cure "Name the columns in `time`, `positions` and `torques` of [data]. The message lists the columns of the file."

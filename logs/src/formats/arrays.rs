@@ -5,7 +5,10 @@ use std::sync::Arc;
 
 use crate::{
     error::{Error, Problem},
-    formats::structures::Object,
+    formats::{
+        structures::Object,
+        table_file::{RowReader, TableFile},
+    },
     problems::{Existing, shown},
 };
 
@@ -53,11 +56,6 @@ impl Arrays {
         }
     }
 
-    /// The file as the caller named it.
-    pub(crate) fn file(&self) -> &str {
-        &self.file
-    }
-
     /// Adds an array of `rows` × `columns` with column-major `values`.
     ///
     /// Samples run along its longer side.
@@ -82,40 +80,6 @@ impl Arrays {
     pub(crate) fn label(&mut self, label: &str, name: &str) {
         self.names.push(label.to_owned());
         self.labels.push((label.to_owned(), name.to_owned()));
-    }
-
-    /// Number of vectors and columns of matrices.
-    pub(crate) fn columns(&self) -> usize {
-        self.series.len()
-    }
-
-    /// Index of a vector, of a matrix column `name(:,2)` or of a matrix row `name(2,:)`.
-    ///
-    /// The name may be the text that names a signal, if only one signal has it.
-    ///
-    /// # Errors
-    /// A text of several signals, or the name of an object.
-    pub(crate) fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
-        if let Some(place) = self.named(name) {
-            return Ok(Some(place));
-        }
-        let index = name.rfind('(').filter(|_| name.ends_with(')'));
-        let (label, column) = name.split_at(index.unwrap_or(name.len()));
-        for (label, column) in [(name, ""), (label.trim(), column)] {
-            let arrays: Vec<&str> = self.labelled(label).collect();
-            match arrays[..] {
-                [] => {}
-                [array] => return Ok(self.named(&format!("{array}{column}"))),
-                [first, second, ..] => {
-                    return Err(ambiguous(&self.file, name, label, [first, second]));
-                }
-            }
-        }
-        let outer = name.split(['.', '(', '{']).next().unwrap_or_default();
-        match self.objects.iter().find(|object| object.name == outer) {
-            Some(object) => Err(self.unreadable(object).column(name)),
-            None => Ok(None),
-        }
     }
 
     /// Arrays that a text names.
@@ -154,15 +118,61 @@ impl Arrays {
             .or_else(|| vector.and_then(is))
             .or_else(|| is(&single))
     }
+}
 
-    /// Values of a vector or of a matrix column.
-    pub(crate) fn values(&self, name: &str) -> Option<&[f64]> {
+impl TableFile for Arrays {
+    fn file(&self) -> &str {
+        &self.file
+    }
+
+    fn what(&self) -> &'static str {
+        "a file of arrays"
+    }
+
+    fn in_memory(&self) -> bool {
+        true
+    }
+
+    fn has_variables(&self) -> bool {
+        true
+    }
+
+    fn columns(&self) -> usize {
+        self.series.len()
+    }
+
+    /// Finds a vector, a matrix column `name(:,2)` or a matrix row `name(2,:)`.
+    ///
+    /// The name may be the text that names a signal, if only one signal has it.
+    fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
+        if let Some(place) = self.named(name) {
+            return Ok(Some(place));
+        }
+        let index = name.rfind('(').filter(|_| name.ends_with(')'));
+        let (label, column) = name.split_at(index.unwrap_or(name.len()));
+        for (label, column) in [(name, ""), (label.trim(), column)] {
+            let arrays: Vec<&str> = self.labelled(label).collect();
+            match arrays[..] {
+                [] => {}
+                [array] => return Ok(self.named(&format!("{array}{column}"))),
+                [first, second, ..] => {
+                    return Err(ambiguous(&self.file, name, label, [first, second]));
+                }
+            }
+        }
+        let outer = name.split(['.', '(', '{']).next().unwrap_or_default();
+        match self.objects.iter().find(|object| object.name == outer) {
+            Some(object) => Err(self.unreadable(object).column(name)),
+            None => Ok(None),
+        }
+    }
+
+    fn variable(&self, name: &str) -> Option<&[f64]> {
         let place = self.find(name).ok().flatten()?;
         Some(&*self.series[place].values)
     }
 
-    /// The existing arrays.
-    pub(crate) fn existing(&self) -> Existing<'_> {
+    fn existing(&self) -> Existing<'_> {
         Existing {
             names: self.names.iter().map(String::as_str).collect(),
             columns: self.series.len(),
@@ -170,8 +180,7 @@ impl Arrays {
         }
     }
 
-    /// First column of a matrix that is named like a vector.
-    pub(crate) fn first_column(&self, name: &str) -> Option<&str> {
+    fn first_column(&self, name: &str) -> Option<&str> {
         let array = self.labelled(name).next().unwrap_or(name);
         let names = self.series.iter().map(|series| series.name.as_str());
         let is_column = |own: &&str| {
@@ -183,11 +192,7 @@ impl Arrays {
         { names }.find(is_column)
     }
 
-    /// Reads some series row by row; the names are for messages.
-    ///
-    /// # Errors
-    /// Series of different lengths.
-    pub(crate) fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Rows<'a>, Error> {
+    fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn RowReader + 'a>, Error> {
         let columns: Vec<(&[f64], &str)> = wanted
             .iter()
             .map(|&(place, name)| (&*self.series[place].values, name))
@@ -205,11 +210,11 @@ impl Arrays {
             }
         }
         Error::check(problems)?;
-        Ok(Rows {
+        Ok(Box::new(Rows {
             file: &self.file,
             columns,
             next: 0,
-        })
+        }))
     }
 }
 
@@ -226,18 +231,14 @@ pub(crate) fn ambiguous(file: &str, name: &str, label: &str, paths: [&str; 2]) -
 
 /// Series that are read row by row.
 #[derive(Debug)]
-pub(crate) struct Rows<'a> {
+struct Rows<'a> {
     file: &'a str,
     columns: Vec<(&'a [f64], &'a str)>,
     next: usize,
 }
 
-impl Rows<'_> {
-    /// Writes the next sample to `values`; `false` at the end.
-    ///
-    /// # Errors
-    /// Values that are not finite.
-    pub(crate) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
+impl RowReader for Rows<'_> {
+    fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
         let sample = self.next;
         self.next += 1;
         let mut problems = Vec::new();
@@ -257,5 +258,9 @@ impl Rows<'_> {
         }
         Error::check(problems)?;
         Ok(!self.columns.is_empty())
+    }
+
+    fn bytes(&self) -> u64 {
+        0
     }
 }

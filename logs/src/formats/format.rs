@@ -1,38 +1,99 @@
-//! Recognises the format of a log from its first bytes, never from its name.
+//! All formats of logs. They are recognised by their first bytes, never by the file's name.
+//!
+//! A new format is a file or folder with a [`TableFile`], and an entry of `FORMATS`.
 
 use overact::Code;
 use std::io::Read;
 
+#[cfg(feature = "hdf5")]
+use crate::formats::hdf5_file::Hdf5;
+#[cfg(feature = "mcap")]
+use crate::formats::mcap_file;
 use crate::{
     bytes::{byte_source::ByteSource, unpacking},
     error::{Error, Problem},
+    formats::{
+        json_lines::JsonLines, mat_file, numpy, parquet_file::Parquet, table::Table,
+        table_file::TableFile, text::Text,
+    },
     problems::unreadable,
 };
 
 /// Number of bytes that determine the format.
 const BEGINNING: usize = 4096;
 
-/// Supported formats.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Format {
-    /// Lines of numbers.
-    Text,
-    /// JSON objects, one per line or in a list.
-    JsonLines,
-    /// MATLAB versions 5 to 7.2.
-    Mat,
-    /// NumPy's `.npy`.
-    Array,
-    /// Parquet.
-    Parquet,
-    /// A zip archive, possibly NumPy's `.npz`.
-    Archive,
-    /// HDF5, including MATLAB version 7.3.
+/// A supported format.
+struct Format {
+    /// Name in the list of formats.
+    name: &'static str,
+    /// Whether a file with these first bytes has the format.
+    is: fn(&[u8]) -> bool,
+    /// Opens a file: one table, or one for each of its parts.
+    open: fn(String, &ByteSource) -> Result<Vec<Table>, Error>,
+}
+
+/// All formats; the first one that a file has is used.
+const FORMATS: &[Format] = &[
     #[cfg(feature = "hdf5")]
-    Hdf5,
-    /// MCAP.
+    Format {
+        name: "HDF5",
+        is: |first| first.starts_with(b"MATLAB 7.3") || first.starts_with(HDF5),
+        open: |file, bytes| one(Hdf5::open(file.clone(), on_disk(&file, bytes)?)),
+    },
     #[cfg(feature = "mcap")]
-    Mcap,
+    Format {
+        name: "MCAP",
+        is: |first| first.starts_with(MCAP),
+        open: |file, bytes| Ok(parts(mcap_file::open(&file, on_disk(&file, bytes)?)?)),
+    },
+    Format {
+        name: "MATLAB's `.mat`",
+        is: is_mat,
+        open: |file, bytes| one(mat_file::open(file, bytes)),
+    },
+    Format {
+        name: "NumPy's `.npy`",
+        is: |first| first.starts_with(b"\x93NUMPY"),
+        open: |file, bytes| one(numpy::open_array(file, bytes)),
+    },
+    Format {
+        name: "NumPy's `.npz`",
+        is: |first| first.starts_with(b"PK\x03\x04"),
+        open: |file, bytes| one(numpy::open_archive(file, bytes)),
+    },
+    Format {
+        name: "Parquet",
+        is: |first| first.starts_with(b"PAR1"),
+        open: |file, bytes| one(Parquet::open(file, bytes)),
+    },
+    Format {
+        name: "JSON Lines",
+        is: |first| is_text(first) && is_json(first),
+        open: |file, bytes| one(JsonLines::open(file, bytes)),
+    },
+    Format {
+        name: "text (CSV)",
+        is: is_text,
+        open: |file, bytes| Ok(parts(Text::open(file, bytes)?)),
+    },
+];
+
+fn one(file: Result<impl TableFile + 'static, Error>) -> Result<Vec<Table>, Error> {
+    Ok(parts([file?]))
+}
+
+fn parts(files: impl IntoIterator<Item = impl TableFile + 'static>) -> Vec<Table> {
+    files.into_iter().map(Table::new).collect()
+}
+
+/// Path of a file whose format can only be read from disk.
+#[cfg(any(feature = "hdf5", feature = "mcap"))]
+fn on_disk<'m>(file: &str, medium: &'m ByteSource) -> Result<&'m std::path::Path, Error> {
+    medium.path().ok_or_else(|| {
+        let message = "files of this format can be read from a disk only";
+        let problem = Problem::new(Code::LOG_FORMAT, message).file(file);
+        problem.help("export CSV").into()
+    })
 }
 
 /// Formats of optional features: magic bytes, description, feature, and help without it.
@@ -104,34 +165,31 @@ const REFUSED: [(&[u8], &str, &str); 9] = [
     ),
 ];
 
-/// Recognises the format of a file; the second value is the unpacked file if it is compressed.
+/// Opens a file of any format, also a compressed one: one table, or one for each of its parts.
 ///
 /// # Errors
 /// A file that cannot be read, or of an unsupported format.
-pub(crate) fn recognise(
-    file: &str,
-    medium: &ByteSource,
-) -> Result<(Format, Option<ByteSource>), Error> {
+pub(crate) fn open(file: String, medium: &ByteSource) -> Result<Vec<Table>, Error> {
     if let Some(path) = medium.path()
         && path.metadata().is_ok_and(|found| !found.is_file())
     {
         // A log is read several times, which pipes and endless devices do not allow.
         let message = "the log is not a regular file";
-        let problem = Problem::new(Code::UNREADABLE_LOG, message).file(file);
+        let problem = Problem::new(Code::UNREADABLE_LOG, message).file(file.as_str());
         return Err(problem.help("write it to a file first").into());
     }
-    let mut first = beginning(file, medium)?;
+    let mut first = beginning(&file, medium)?;
     let mut unpacked = None;
     if first.starts_with(unpacking::GZIP) {
         let own = unpacking::gunzip(medium).map_err(|why| {
-            let problem = Problem::new(Code::LOG_FORMAT, why).file(file);
+            let problem = Problem::new(Code::LOG_FORMAT, why).file(file.as_str());
             problem.help("copy it again, or unpack it first")
         })?;
-        first = beginning(file, &own)?;
+        first = beginning(&file, &own)?;
         unpacked = Some(own);
     }
-    let format = of(&first).map_err(|problem| problem.file(file))?;
-    Ok((format, unpacked))
+    let format = of(&first).map_err(|problem| problem.file(file.as_str()))?;
+    (format.open)(file, unpacked.as_ref().unwrap_or(medium))
 }
 
 /// First bytes of a file.
@@ -145,18 +203,13 @@ fn beginning(file: &str, medium: &ByteSource) -> Result<Vec<u8>, Error> {
 }
 
 /// Recognises the format from the first bytes.
-fn of(beginning: &[u8]) -> Result<Format, Problem> {
+fn of(beginning: &[u8]) -> Result<&'static Format, Problem> {
     let mut refused = REFUSED.iter();
     if let Some((_, what, help)) = refused.find(|(magic, ..)| beginning.starts_with(magic)) {
         return Err(Problem::new(Code::LOG_FORMAT, *what).help(*help));
     }
-    #[cfg(feature = "hdf5")]
-    if beginning.starts_with(b"MATLAB 7.3") || beginning.starts_with(HDF5) {
-        return Ok(Format::Hdf5);
-    }
-    #[cfg(feature = "mcap")]
-    if beginning.starts_with(MCAP) {
-        return Ok(Format::Mcap);
+    if let Some(format) = FORMATS.iter().find(|format| (format.is)(beginning)) {
+        return Ok(format);
     }
     let mut optional = OPTIONAL.iter();
     if let Some((_, what, feature, help)) =
@@ -167,37 +220,27 @@ fn of(beginning: &[u8]) -> Result<Format, Problem> {
             "build it with the feature `{feature}`: `cargo run --release --features {feature} -- …`; or {help}"
         )));
     }
-    // The header of a `.mat` file ends with its version and byte order.
-    let is_mat = matches!(beginning.get(124..128), Some(b"\x00\x01IM" | b"\x01\x00MI"));
-    if is_mat || beginning.starts_with(b"MATLAB 5.0") {
-        return Ok(Format::Mat);
-    }
-    if beginning.starts_with(b"\x93NUMPY") {
-        return Ok(Format::Array);
-    }
-    if beginning.starts_with(b"PAR1") {
-        return Ok(Format::Parquet);
-    }
-    if beginning.starts_with(b"PK\x03\x04") {
-        return Ok(Format::Archive);
-    }
-    let is_text = |byte: &u8| !byte.is_ascii_control() || b"\t\n\r\x0c\x1a".contains(byte);
-    if beginning.iter().all(is_text) {
-        return Ok(if is_json(beginning) {
-            Format::JsonLines
-        } else {
-            Format::Text
-        });
-    }
     if is_matlab_4(beginning) {
         let message = "the file is of MATLAB's version 4, which is not supported";
         let problem = Problem::new(Code::LOG_FORMAT, message);
         return Err(problem.help("save it in MATLAB with `save(..., '-v7')`, or export CSV"));
     }
     let message = "the file is neither text nor of a known format";
-    Err(Problem::new(Code::LOG_FORMAT, message).help(
-        "logs are text (CSV), JSON Lines, Parquet, MATLAB's `.mat`, NumPy's `.npy` and `.npz`, HDF5 or MCAP",
-    ))
+    let names: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
+    let help = format!("this build of overact reads {}", names.join(", "));
+    Err(Problem::new(Code::LOG_FORMAT, message).help(help))
+}
+
+/// Whether a file starts as one of MATLAB's versions 5 to 7.2, whose header ends with version and
+/// byte order.
+fn is_mat(file: &[u8]) -> bool {
+    let end = file.get(124..128);
+    matches!(end, Some(b"\x00\x01IM" | b"\x01\x00MI")) || file.starts_with(b"MATLAB 5.0")
+}
+
+fn is_text(file: &[u8]) -> bool {
+    let is_printed = |byte: &u8| !byte.is_ascii_control() || b"\t\n\r\x0c\x1a".contains(byte);
+    file.iter().all(is_printed)
 }
 
 /// Whether a file starts as one of MATLAB's version 4.
@@ -239,28 +282,32 @@ fn is_json(beginning: &[u8]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Format, of};
+    use super::of;
+
+    fn name(first: &[u8]) -> Option<&'static str> {
+        of(first).ok().map(|format| format.name)
+    }
 
     #[test]
     fn first_bytes_tell_the_format() {
-        assert_eq!(of(b""), Ok(Format::Text));
-        assert_eq!(of("time;q\u{e9}\n".as_bytes()), Ok(Format::Text));
+        assert_eq!(name(b""), Some("text (CSV)"));
+        assert_eq!(name("time;q\u{e9}\n".as_bytes()), Some("text (CSV)"));
         for json in [
             "{\"t\":0}\n",
             "\u{feff}\n{ \"t\":0}",
             "[\n  {\n\"t\": 0",
             "{}\n{\"t\":0}",
         ] {
-            assert_eq!(of(json.as_bytes()), Ok(Format::JsonLines), "{json}");
+            assert_eq!(name(json.as_bytes()), Some("JSON Lines"), "{json}");
         }
-        assert_eq!(of(b"[rad],{deg}\n"), Ok(Format::Text));
+        assert_eq!(name(b"[rad],{deg}\n"), Some("text (CSV)"));
         let mut mat = vec![b' '; 128];
         mat[124..].copy_from_slice(b"\x00\x01IM");
-        assert_eq!(of(&mat), Ok(Format::Mat));
-        let unknown = of(b"\x00\x01\x02").expect_err("unknown");
+        assert_eq!(name(&mat), Some("MATLAB's `.mat`"));
+        let unknown = of(b"\x00\x01\x02").err().expect("unknown");
         assert!(unknown.message.contains("neither text nor"), "{unknown}");
-        assert_eq!(of(b"PAR1\x15\x04"), Ok(Format::Parquet));
-        let encrypted = of(b"PARE\x15\x04").expect_err("encrypted");
+        assert_eq!(name(b"PAR1\x15\x04"), Some("Parquet"));
+        let encrypted = of(b"PARE\x15\x04").err().expect("encrypted");
         assert!(encrypted.message.contains("encrypted"), "{encrypted}");
     }
 }

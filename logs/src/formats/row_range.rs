@@ -1,6 +1,6 @@
 //! Rows of a table from a first one on, up to a number of them.
 
-use crate::{error::Error, formats::table::Rows};
+use crate::{error::Error, formats::table_file::RowReader};
 
 /// Range of rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,14 +21,14 @@ impl RowRange {
 /// The remaining rows of a range.
 #[derive(Debug)]
 pub(crate) struct RangedRows<'a> {
-    rows: Rows<'a>,
+    rows: Box<dyn RowReader + 'a>,
     left: RowRange,
     /// Number of rows read or skipped.
     passed: usize,
 }
 
 impl<'a> RangedRows<'a> {
-    pub(crate) const fn new(rows: Rows<'a>, range: RowRange) -> Self {
+    pub(crate) fn new(rows: Box<dyn RowReader + 'a>, range: RowRange) -> Self {
         Self {
             rows,
             left: range,
@@ -69,7 +69,7 @@ impl<'a> RangedRows<'a> {
     }
 
     /// The rows as stored in the file.
-    pub(crate) const fn logged(&self) -> &Rows<'a> {
-        &self.rows
+    pub(crate) fn logged(&self) -> &(dyn RowReader + 'a) {
+        &*self.rows
     }
 }

@@ -1,6 +1,6 @@
 //! Clocks of files: usual steps, agreement, and overlap of times.
 
-use crate::{error::Problem, formats::table::Rows, problems::shown};
+use crate::{error::Problem, formats::table_file::RowReader, problems::shown};
 use overact::Code;
 
 /// Number of steps of a clock from which the usual one is determined.
@@ -23,7 +23,7 @@ pub(crate) fn usual_step(times: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Times of a file up to its end or an error, which is reported when the file is read.
-pub(crate) fn times(mut clock: Rows<'_>) -> impl Iterator<Item = f64> {
+pub(crate) fn times(mut clock: Box<dyn RowReader + '_>) -> impl Iterator<Item = f64> {
     std::iter::from_fn(move || {
         let mut time = [0.0];
         (clock.next(&mut time) == Ok(true)).then_some(time[0])
@@ -31,7 +31,7 @@ pub(crate) fn times(mut clock: Rows<'_>) -> impl Iterator<Item = f64> {
 }
 
 /// Whether clocks differ by more than a fiftieth of a step, or one ends before the others.
-pub(crate) fn differ(mut clocks: Vec<Rows<'_>>) -> bool {
+pub(crate) fn differ(mut clocks: Vec<Box<dyn RowReader + '_>>) -> bool {
     let mut last = None;
     loop {
         let mut times = Vec::new();

@@ -292,7 +292,7 @@ impl<'a> Columns<'a> {
                 return Problem::new(Code::UNREADABLE_LOG, "the run has no file").file(self.run);
             }
             [first, others @ ..] if self.numbers.iter().all(|number| *number == 1) => {
-                let parts = others.iter().map(Table::existing);
+                let parts = others.iter().map(|table| table.existing());
                 let existing = parts.fold(first.existing(), |mut all, own| {
                     all.names.extend(own.names);
                     all.columns += own.columns;

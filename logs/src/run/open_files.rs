@@ -5,7 +5,7 @@ use overact::Code;
 use crate::{
     bytes::byte_source::ByteSource,
     error::{Error, Problem},
-    formats::table::Table,
+    formats::{format, table::Table},
     mapping::{Mapping, transmission::Transmission},
     problems::shown,
     resampling,
@@ -33,7 +33,7 @@ impl Files {
         mapping.check()?;
         let (mut tables, mut numbers, mut problems) = (Vec::new(), Vec::new(), Vec::new());
         for ((file, medium), number) in files.iter().zip(1..) {
-            match Table::open(file.clone(), medium) {
+            match format::open(file.clone(), medium) {
                 Ok(parts) => {
                     numbers.resize(numbers.len() + parts.len(), number);
                     tables.extend(parts);
@@ -41,7 +41,7 @@ impl Files {
                 Err(error) => problems.extend(error.problems),
             }
         }
-        problems.extend(tables.iter().filter_map(Table::without_lines));
+        problems.extend(tables.iter().filter_map(Table::without_content));
         problems.extend(twice(files));
         Error::check(problems)?;
         Self::of_tables(name, tables, numbers, mapping, range)
@@ -59,12 +59,12 @@ impl Files {
         range: Option<TimeRange>,
     ) -> Result<Self, Error> {
         mapping.check()?;
-        if tables.iter().any(Table::is_part) {
+        if tables.iter().any(|table| table.is_part()) {
             let used = used(&name, &tables, &numbers, mapping)?;
             numbers = used.iter().map(|table| numbers[*table]).collect();
             tables = used.iter().map(|table| tables[*table].clone()).collect();
         }
-        if let Some(origin) = tables.iter().find_map(Table::origin) {
+        if let Some(origin) = tables.iter().find_map(|table| table.origin()) {
             tables.iter_mut().for_each(|table| table.set_origin(origin));
         }
         let signals = Signals::new(&name, &tables, &numbers, mapping)?;

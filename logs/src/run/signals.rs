@@ -242,7 +242,7 @@ fn gains(run: &str, tables: &[Table], mapping: &Mapping) -> Result<Vec<f64>, Err
 /// The problem of a gain that no file contains.
 fn missing_gain(run: &str, tables: &[Table], name: &str) -> Problem {
     let with_variables = tables.iter().find(|table| table.has_variables());
-    match with_variables.map(Table::existing) {
+    match with_variables.map(|table| table.existing()) {
         Some(mut existing) => {
             existing.what = "scalar variable";
             missing_columns(run, &[name], &existing)
@@ -251,7 +251,7 @@ fn missing_gain(run: &str, tables: &[Table], name: &str) -> Problem {
             Code::DATA_TABLE,
             format!(
                 "the torque gain is the variable `{name}`, but {} has no variables",
-                tables.first().map_or("the run", Table::what)
+                tables.first().map_or("the run", |table| table.what())
             ),
         )
         .file(run)

@@ -77,7 +77,7 @@ impl<'a> Storage<'a> {
     /// Moves samples to the temporary file if they do not fit, and forgets them without one.
     fn relieve(&mut self, samples: &mut Samples) {
         let is_too_large = 2 * (self.kept + samples.positions.len()) > LARGEST_IN_MEMORY;
-        if self.fits && is_too_large && !self.files.tables.iter().all(Table::in_memory) {
+        if self.fits && is_too_large && !self.files.tables.iter().all(|table| table.in_memory()) {
             self.fits = false;
             self.store = self.files.temporary_store(self.is_split);
         }
@@ -224,7 +224,7 @@ impl Files {
 
     /// A temporary file for a run that is read from text, or in stretches.
     fn temporary_store(&self, is_split: bool) -> Option<TemporaryStore> {
-        let is_slow = is_split || self.tables.iter().any(Table::is_text);
+        let is_slow = is_split || self.tables.iter().any(|table| table.is_slow());
         let new = || TemporaryStore::new(self.actuators(), self.has_velocities());
         is_slow.then(new).flatten()
     }

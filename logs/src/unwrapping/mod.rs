@@ -22,7 +22,7 @@ use crate::{
     error::Error,
     formats::{
         row_range::{RangedRows, RowRange},
-        table,
+        table_file::RowReader,
     },
 };
 
@@ -146,7 +146,7 @@ impl<'a> UnwrappedRows<'a> {
     }
 
     /// The rows as stored in the file.
-    pub(crate) const fn logged(&self) -> &table::Rows<'a> {
+    pub(crate) fn logged(&self) -> &(dyn RowReader + 'a) {
         self.rows.logged()
     }
 }

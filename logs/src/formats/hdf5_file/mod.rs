@@ -23,7 +23,7 @@ use self::{
 use crate::{
     error::{Error, Problem},
     formats::arrays::ambiguous,
-    formats::stored::{Stored, StoredRows},
+    formats::table_file::{RowReader, TableFile},
     problems::{Existing, shown, unreadable},
 };
 
@@ -150,7 +150,7 @@ impl Hdf5 {
     }
 }
 
-impl Stored for Hdf5 {
+impl TableFile for Hdf5 {
     fn file(&self) -> &str {
         &self.file
     }
@@ -227,7 +227,7 @@ impl Stored for Hdf5 {
         }
     }
 
-    fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn StoredRows + 'a>, Error> {
+    fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn RowReader + 'a>, Error> {
         let wanted = wanted.iter().filter_map(|&(place, name)| {
             let (series, part) = self.series(place)?;
             Some(Wanted { series, part, name })

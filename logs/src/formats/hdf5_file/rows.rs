@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     error::{Error, Problem},
-    formats::stored::StoredRows,
+    formats::table_file::RowReader,
     problems::shown,
 };
 
@@ -174,7 +174,7 @@ impl Block {
     }
 }
 
-impl StoredRows for Rows<'_> {
+impl RowReader for Rows<'_> {
     fn next(&mut self, values: &mut [f64]) -> std::result::Result<bool, Error> {
         let count = self
             .wanted

@@ -25,7 +25,7 @@ use self::{
 use crate::{
     bytes::byte_source::ByteSource,
     error::{Error, Problem},
-    formats::stored::{Stored, StoredRows},
+    formats::table_file::{RowReader, TableFile},
     problems::{Existing, only, unreadable},
 };
 
@@ -82,7 +82,7 @@ impl JsonLines {
     }
 }
 
-impl Stored for JsonLines {
+impl TableFile for JsonLines {
     fn file(&self) -> &str {
         &self.file
     }
@@ -112,7 +112,7 @@ impl Stored for JsonLines {
         }
     }
 
-    fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn StoredRows + 'a>, Error> {
+    fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn RowReader + 'a>, Error> {
         let input = self.medium.open();
         let input = input.map_err(|error| unreadable(&self.file, &error))?;
         let paths = wanted.iter().map(|&(place, name)| {

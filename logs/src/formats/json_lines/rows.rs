@@ -11,7 +11,7 @@ use crate::{
     error::{Error, Problem},
     formats::{
         instant::{Instant, Midnights},
-        stored::StoredRows,
+        table_file::RowReader,
     },
     problems::{quoted, shown},
 };
@@ -138,7 +138,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-impl StoredRows for Rows<'_> {
+impl RowReader for Rows<'_> {
     fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
         if self.names.is_empty() || self.is_broken {
             return Ok(false);

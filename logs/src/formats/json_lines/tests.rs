@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use super::JsonLines;
-use crate::{bytes::byte_source::ByteSource, error::Error, formats::stored::Stored};
+use crate::{bytes::byte_source::ByteSource, error::Error, formats::table_file::TableFile};
 
 fn open(text: &str) -> Result<JsonLines, Error> {
     let bytes: Arc<[u8]> = text.as_bytes().into();

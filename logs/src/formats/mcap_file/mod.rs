@@ -23,7 +23,7 @@ use self::{
 };
 use crate::{
     error::{Error, Problem},
-    formats::stored::{Stored, StoredRows},
+    formats::table_file::{RowReader, TableFile},
     problems::{Existing, legible, only, shown, unreadable},
 };
 
@@ -61,7 +61,7 @@ pub(crate) fn open(file: &str, path: &Path) -> Result<Vec<Topic>, Error> {
     Ok(opened)
 }
 
-impl Stored for Topic {
+impl TableFile for Topic {
     fn file(&self) -> &str {
         &self.file
     }
@@ -118,7 +118,7 @@ impl Stored for Topic {
         }
     }
 
-    fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn StoredRows + 'a>, Error> {
+    fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn RowReader + 'a>, Error> {
         let input = File::open(&self.path).map_err(|error| unreadable(&self.file, &error))?;
         let length = input
             .metadata()

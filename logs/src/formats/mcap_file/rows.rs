@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     error::{Error, Problem},
-    formats::stored::StoredRows,
+    formats::table_file::RowReader,
     problems::{legible, shown},
 };
 
@@ -131,7 +131,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-impl StoredRows for Rows<'_> {
+impl RowReader for Rows<'_> {
     fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
         if self.wanted.is_empty() || self.is_broken {
             return Ok(false);

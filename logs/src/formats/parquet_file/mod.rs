@@ -29,7 +29,7 @@ use self::{
 use crate::{
     bytes::byte_source::ByteSource,
     error::{Error, Problem},
-    formats::stored::{Stored, StoredRows},
+    formats::table_file::{RowReader, TableFile},
     problems::{Existing, legible, only, shown, unreadable},
 };
 
@@ -89,7 +89,7 @@ impl Parquet {
     }
 }
 
-impl Stored for Parquet {
+impl TableFile for Parquet {
     fn origin(&self) -> Option<i64> {
         self.origin
     }
@@ -136,7 +136,7 @@ impl Stored for Parquet {
         }
     }
 
-    fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn StoredRows + 'a>, Error> {
+    fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn RowReader + 'a>, Error> {
         let input = self
             .medium
             .open()

@@ -20,7 +20,7 @@ use super::{kind::Kind, pages::Pages};
 use crate::{
     bytes::byte_source::Opened,
     error::{Error, Problem},
-    formats::stored::StoredRows,
+    formats::table_file::RowReader,
     problems::{legible, shown},
 };
 
@@ -141,7 +141,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-impl StoredRows for Rows<'_> {
+impl RowReader for Rows<'_> {
     fn is_broken(&self) -> bool {
         self.is_broken
     }

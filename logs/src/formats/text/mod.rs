@@ -1,8 +1,9 @@
 //! Text files: lines of numbers, separated by commas, semicolons, tabs or blanks.
 //!
-//! A file is read once when it is opened. This pass checks every cell, counts samples and computes
-//! the frequency. Small files are then in memory. The numbers of a large file are in a temporary
-//! file, or it is read again, row by row.
+//! Opening a file reads its first 64 KB and detects the dialect. `run/summary.rs` then reads the file
+//! once, to check its cells, count samples and compute the frequency. Small files are kept in
+//! memory. The numbers of a large file are written to a temporary file, or it is read again, row by
+//! row.
 //!
 //! - `dialect`: separators, decimal commas and names; `separator`: records by a separator;
 //! - `preamble`: lines before the samples; `groups`: columns with cells in the same rows;
@@ -29,10 +30,11 @@ use std::{
 };
 
 use self::dialect::Dialect;
-pub(crate) use self::rows::Rows;
+use self::rows::Rows;
 use crate::{
     bytes::byte_source::{ByteSource, Opened},
     error::{Error, Problem},
+    formats::table_file::{RowReader, TableFile},
     problems::{Existing, only, unreadable},
 };
 
@@ -84,28 +86,6 @@ impl Text {
         Ok(if parts.is_empty() { vec![whole] } else { parts })
     }
 
-    /// Whether it is one of several groups of columns of its file.
-    pub(crate) const fn is_part(&self) -> bool {
-        self.group.is_some()
-    }
-
-    /// Origin of dates, s since 1970; `None` without dates.
-    pub(crate) fn origin(&self) -> Option<i64> {
-        self.dialect.first_day.map(|_| self.origin)
-    }
-
-    /// Sets the origin of dates, to be common to several files.
-    pub(crate) const fn set_origin(&mut self, origin: i64) {
-        self.origin = origin;
-    }
-
-    /// Note on lines that are not read.
-    pub(crate) fn note(&self) -> Option<String> {
-        let lines = self.dialect.skipped_lines;
-        let s = if lines == 1 { " is" } else { "s are" };
-        (lines > 0).then(|| format!("the first {lines} line{s} not samples"))
-    }
-
     /// Whether a column is in this table: in its group, or in every row.
     fn has(&self, column: usize) -> bool {
         let mut others = self.dialect.groups.iter();
@@ -130,52 +110,6 @@ impl Text {
         names.map(|(column, name)| if self.has(column) { name.as_str() } else { "" })
     }
 
-    /// The file as the caller named it.
-    pub(crate) fn file(&self) -> &str {
-        &self.file
-    }
-
-    /// Whether the text has no line.
-    pub(crate) const fn is_empty(&self) -> bool {
-        self.dialect.columns == 0
-    }
-
-    /// Number of columns that can be selected by number.
-    pub(crate) const fn columns(&self) -> usize {
-        if self.is_part() {
-            0
-        } else {
-            self.dialect.columns
-        }
-    }
-
-    /// Index of the column with this name.
-    ///
-    /// # Errors
-    /// Two columns with this name.
-    pub(crate) fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
-        only(&self.file, name, self.names())
-    }
-
-    /// The existing columns.
-    pub(crate) fn existing(&self) -> Existing<'_> {
-        Existing {
-            names: self.names().filter(|name| !name.is_empty()).collect(),
-            columns: self.columns(),
-            what: "column",
-        }
-    }
-
-    /// Reads some columns from the first row on; the names are for messages.
-    ///
-    /// # Errors
-    /// A file that cannot be read any more.
-    pub(crate) fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Rows<'a>, Error> {
-        let data = self.data();
-        let (input, bytes) = data.map_err(|error| unreadable(&self.file, &error))?;
-        Rows::new(self, wanted, input, bytes)
-    }
-
     /// The file after its byte order mark and its preamble, and their length.
     fn data(&self) -> std::io::Result<(Opened, u64)> {
         let mut file = self.medium.open()?;
@@ -194,5 +128,67 @@ impl Text {
             Some(line) => problem.line(line),
             None => problem,
         }
+    }
+}
+
+impl TableFile for Text {
+    fn file(&self) -> &str {
+        &self.file
+    }
+
+    fn what(&self) -> &'static str {
+        "a text"
+    }
+
+    fn is_part(&self) -> bool {
+        self.group.is_some()
+    }
+
+    fn is_empty(&self) -> bool {
+        self.dialect.columns == 0
+    }
+
+    fn is_slow(&self) -> bool {
+        true
+    }
+
+    fn columns(&self) -> usize {
+        if self.is_part() {
+            0
+        } else {
+            self.dialect.columns
+        }
+    }
+
+    fn find(&self, name: &str) -> Result<Option<usize>, Problem> {
+        only(&self.file, name, self.names())
+    }
+
+    fn origin(&self) -> Option<i64> {
+        self.dialect.first_day.map(|_| self.origin)
+    }
+
+    fn set_origin(&mut self, origin: i64) {
+        self.origin = origin;
+    }
+
+    fn note(&self) -> Option<String> {
+        let lines = self.dialect.skipped_lines;
+        let s = if lines == 1 { " is" } else { "s are" };
+        (lines > 0).then(|| format!("the first {lines} line{s} not samples"))
+    }
+
+    fn existing(&self) -> Existing<'_> {
+        Existing {
+            names: self.names().filter(|name| !name.is_empty()).collect(),
+            columns: self.columns(),
+            what: "column",
+        }
+    }
+
+    fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn RowReader + 'a>, Error> {
+        let data = self.data();
+        let (input, bytes) = data.map_err(|error| unreadable(&self.file, &error))?;
+        Ok(Box::new(Rows::new(self, wanted, input, bytes)?))
     }
 }

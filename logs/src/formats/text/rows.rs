@@ -11,11 +11,11 @@ use super::{
     row_diagnostics::{Row, RowDiagnostics},
     separator::builder,
 };
-use crate::{bytes::byte_source::Opened, error::Error};
+use crate::{bytes::byte_source::Opened, error::Error, formats::table_file::RowReader};
 
 /// Remaining rows of a text.
 #[derive(Debug)]
-pub(crate) struct Rows<'a> {
+pub(super) struct Rows<'a> {
     text: &'a Text,
     /// Indices and names of the requested columns.
     wanted: Vec<(usize, &'a str)>,
@@ -61,86 +61,6 @@ impl<'a> Rows<'a> {
             rows.pass_header()?;
         }
         Ok(rows)
-    }
-
-    /// Line of the last row.
-    pub(crate) const fn line(&self) -> usize {
-        self.line
-    }
-
-    /// Whether nothing more can be read.
-    pub(crate) const fn is_broken(&self) -> bool {
-        self.is_broken
-    }
-
-    /// Number of bytes read.
-    pub(crate) fn bytes(&self) -> u64 {
-        match &self.source {
-            Source::Lines(lines) => lines.bytes(),
-            Source::Records(records) => records.bytes(),
-        }
-    }
-
-    /// Writes the next row to `values`; `false` at the end.
-    ///
-    /// # Errors
-    /// Every cell of the row that is no finite number, more cells than in other rows, or a file
-    /// that cannot be read further.
-    pub(crate) fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
-        let Dialect {
-            separator,
-            comment,
-            decimal_comma,
-            ..
-        } = self.text.dialect;
-        while let Source::Lines(lines) = &mut self.source {
-            let line = match lines.next() {
-                Ok(Next::Line(line)) => lines.line(line),
-                Ok(Next::End) => return Ok(false),
-                Ok(Next::Unusual) => {
-                    self.leave_lines()?;
-                    break;
-                }
-                Err(error) => return Err(self.broken(&error)),
-            };
-            let line = inside(line, separator);
-            if line.first().is_none_or(|first| *first == comment) {
-                continue;
-            }
-            if self.text.lacks_group(|| cells::split(line, separator)) {
-                continue;
-            }
-            self.line = lines.passed();
-            let most = self.text.dialect.most;
-            if !decimal_comma && cells::read(line, separator, most, &self.order, values) {
-                self.diagnostics.is_first = false;
-                return Ok(true);
-            }
-            let cells = cells::split(line, separator);
-            let row = Row {
-                text: self.text,
-                line: self.line,
-                cells: &cells,
-            };
-            return self.diagnostics.read(&row, &self.wanted, values);
-        }
-        let cells: Vec<&[u8]> = loop {
-            if !self.advance()? {
-                return Ok(false);
-            }
-            let Source::Records(records) = &self.source else {
-                return Ok(false);
-            };
-            if !self.text.lacks_group(|| records.record.iter().collect()) {
-                break records.record.iter().collect();
-            }
-        };
-        let row = Row {
-            text: self.text,
-            line: self.line,
-            cells: &cells,
-        };
-        self.diagnostics.read(&row, &self.wanted, values)
     }
 
     /// Skips the header.
@@ -198,6 +118,80 @@ impl<'a> Rows<'a> {
     fn broken(&mut self, error: &std::io::Error) -> Error {
         self.is_broken = true;
         self.text.broken(error, None).into()
+    }
+}
+
+impl RowReader for Rows<'_> {
+    fn line(&self) -> Option<usize> {
+        Some(self.line)
+    }
+
+    fn is_broken(&self) -> bool {
+        self.is_broken
+    }
+
+    fn bytes(&self) -> u64 {
+        match &self.source {
+            Source::Lines(lines) => lines.bytes(),
+            Source::Records(records) => records.bytes(),
+        }
+    }
+
+    fn next(&mut self, values: &mut [f64]) -> Result<bool, Error> {
+        let Dialect {
+            separator,
+            comment,
+            decimal_comma,
+            ..
+        } = self.text.dialect;
+        while let Source::Lines(lines) = &mut self.source {
+            let line = match lines.next() {
+                Ok(Next::Line(line)) => lines.line(line),
+                Ok(Next::End) => return Ok(false),
+                Ok(Next::Unusual) => {
+                    self.leave_lines()?;
+                    break;
+                }
+                Err(error) => return Err(self.broken(&error)),
+            };
+            let line = inside(line, separator);
+            if line.first().is_none_or(|first| *first == comment) {
+                continue;
+            }
+            if self.text.lacks_group(|| cells::split(line, separator)) {
+                continue;
+            }
+            self.line = lines.passed();
+            let most = self.text.dialect.most;
+            if !decimal_comma && cells::read(line, separator, most, &self.order, values) {
+                self.diagnostics.is_first = false;
+                return Ok(true);
+            }
+            let cells = cells::split(line, separator);
+            let row = Row {
+                text: self.text,
+                line: self.line,
+                cells: &cells,
+            };
+            return self.diagnostics.read(&row, &self.wanted, values);
+        }
+        let cells: Vec<&[u8]> = loop {
+            if !self.advance()? {
+                return Ok(false);
+            }
+            let Source::Records(records) = &self.source else {
+                return Ok(false);
+            };
+            if !self.text.lacks_group(|| records.record.iter().collect()) {
+                break records.record.iter().collect();
+            }
+        };
+        let row = Row {
+            text: self.text,
+            line: self.line,
+            cells: &cells,
+        };
+        self.diagnostics.read(&row, &self.wanted, values)
     }
 }
 

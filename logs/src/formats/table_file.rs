@@ -1,4 +1,4 @@
-//! Interface of file formats that are read block by block from disk.
+//! Interface of a log's format: an open file as columns of numbers.
 
 use std::fmt::Debug;
 
@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// An open file, or a part of one, whose columns are read repeatedly.
-pub(crate) trait Stored: Debug + Send + Sync {
+pub(crate) trait TableFile: Debug + Send + Sync {
     /// The file as the caller named it.
     fn file(&self) -> &str;
 
@@ -28,6 +28,21 @@ pub(crate) trait Stored: Debug + Send + Sync {
     /// Whether it is one of several parts of its file, which are used only if requested.
     fn is_part(&self) -> bool {
         false
+    }
+
+    /// Whether the file has no content.
+    fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// Whether the numbers are in memory.
+    fn in_memory(&self) -> bool {
+        false
+    }
+
+    /// Note on content that is not read.
+    fn note(&self) -> Option<String> {
+        None
     }
 
     /// Whether numbers must be parsed from text.
@@ -82,11 +97,11 @@ pub(crate) trait Stored: Debug + Send + Sync {
     ///
     /// # Errors
     /// A file that cannot be read any more, or was changed; columns of different lengths.
-    fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn StoredRows + 'a>, Error>;
+    fn rows<'a>(&'a self, wanted: &[(usize, &'a str)]) -> Result<Box<dyn RowReader + 'a>, Error>;
 }
 
 /// The remaining rows of a file.
-pub(crate) trait StoredRows: Debug {
+pub(crate) trait RowReader: Debug {
     /// Writes the next row to `values`; `false` at the end.
     ///
     /// # Errors
@@ -99,7 +114,9 @@ pub(crate) trait StoredRows: Debug {
     }
 
     /// Whether nothing more can be read.
-    fn is_broken(&self) -> bool;
+    fn is_broken(&self) -> bool {
+        false
+    }
 
     /// Number of bytes of the file read.
     fn bytes(&self) -> u64;
