@@ -267,7 +267,7 @@ fn shortened(name: &str, duration: &str) -> String {
 /// redundant one.
 const SMALL: [&str; 5] = ["emps", "five_bar", "rx90", "scotch_yoke", "three_leg_point"];
 
-/// Those and every fourth robot in the full tier, all in the nightly tier.
+/// Those and some others in the full tier, all in the nightly tier.
 ///
 /// `overact-tests` generates and compiles all of them in any tier.
 fn robots_of_the_tier() -> Vec<String> {

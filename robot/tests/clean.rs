@@ -68,7 +68,7 @@ fn faultless_experiments_may_be_used_without_a_remark() {
     files.sort();
     assert!(files.len() >= 20);
     files.retain(|path| !ACCUSED.contains(&stem(path)));
-    // Half of the robots in the full tier, all at night.
+    // Some robots in the full tier, all at night.
     let cheap = files.iter().filter(|path| CHEAP.contains(&stem(path)));
     let cheap: Vec<_> = cheap.cloned().collect();
     let files = if is_full() { of_many(files) } else { cheap };

@@ -2,7 +2,7 @@
 
 use overact_codegen::{Diagnostics, Effort, Request, RobotModel, Source, compile_with};
 use overact_tests::support::description;
-use overact_tier::by_tier;
+use overact_tier::{by_tier, by_tiers};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::sync::mpsc;
@@ -145,7 +145,7 @@ fn config() -> ProptestConfig {
         given @ RngSeed::Fixed(_) => given,
     };
     ProptestConfig {
-        cases: by_tier([64, 256]),
+        cases: by_tiers([64, 96, 256]),
         max_shrink_iters: 0,
         failure_persistence: None,
         rng_seed,

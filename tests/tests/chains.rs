@@ -9,11 +9,11 @@
 use overact_codegen::Source;
 use overact_tests::support::tree::{self, SKELETON};
 use overact_tests::support::{Failure, all_functions::against_reference};
-use overact_tier::{by_tier, is_full};
+use overact_tier::{by_tier, by_tiers, is_full};
 
 const TOLERANCE: f64 = 1e-9;
-/// States of each robot in the default tier and in the full one.
-const STATES: [usize; 2] = [3, 60];
+/// States of each robot in the default, full and nightly tier.
+const STATES: [usize; 3] = [3, 20, 60];
 
 /// A drive of two crossing axes and a slide between two bodies.
 fn drive(name: &str, from: &str, to: &str) -> String {
@@ -25,7 +25,7 @@ fn drive(name: &str, from: &str, to: &str) -> String {
 fn compare(what: &str, text: String) -> Result<(), Failure> {
     let failures = against_reference(
         Source::new("chains.toml", text),
-        by_tier(STATES),
+        by_tiers(STATES),
         [TOLERANCE; 2],
     )?;
     assert!(failures.is_empty(), "{what}:\n{}", failures.join("\n"));

@@ -21,7 +21,7 @@ use overact_tests::support::sample::samples;
 use overact_tests::support::{
     Backend, Comparison, Evaluated, Failure, Sample, description, model_with,
 };
-use overact_tier::{by_tier, drawn, of_many};
+use overact_tier::{by_tiers, drawn, of_many};
 
 /// Tolerances of functions of base parameters, whose regroupings may be numeric, and of others.
 const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
@@ -29,8 +29,8 @@ const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
 const POWER: f64 = 1e-9;
 /// Rounding of the energy in its differences, in units of the last place.
 const ROUNDING: f64 = 64.0;
-/// States in the default tier and in the full one.
-const STATES: [usize; 2] = [2, 10];
+/// States in the default, full and nightly tier.
+const STATES: [usize; 3] = [2, 4, 10];
 /// Words of the reasons for which a draw is refused.
 const REFUSED: [&str; 11] = [
     "never reaches",
@@ -141,7 +141,7 @@ fn differences(name: &str, text: &str) -> Result<Vec<String>, Failure> {
     let mechanism = reference(&model.mechanism, workspace(&model));
     let expected = Expected::by_position(&model, mechanism);
     let parameters = expected.parameters();
-    let all = samples(&expected.mechanism, &parameters, by_tier(STATES), 7, false)?;
+    let all = samples(&expected.mechanism, &parameters, by_tiers(STATES), 7, false)?;
     let truths = all.iter().map(|sample| expected.at(sample));
     let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
     let mut comparisons = TOLERANCES.map(Comparison::new);
@@ -165,7 +165,7 @@ fn balance(name: &str, text: &str) -> Result<(), Failure> {
     let mechanism = reference(&model.mechanism, workspace(&model));
     let expected = Expected::by_position(&model, mechanism);
     let (mechanism, columns) = (&expected.mechanism, expected.parameters());
-    for sample in samples(mechanism, &columns, by_tier(STATES), 17, false)? {
+    for sample in samples(mechanism, &columns, by_tiers(STATES), 17, false)? {
         let chi = frictionless(mechanism, &sample.all_parameters);
         let energy = |state: &_| DVector::from_element(1, total_energy(mechanism, state, &chi));
         let (change, _) = trajectory::derivatives(mechanism, &sample.state, energy)?;

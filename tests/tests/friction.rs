@@ -14,11 +14,11 @@ use overact_tests::support::expected::Expected;
 use overact_tests::support::library::workspace;
 use overact_tests::support::sample::samples;
 use overact_tests::support::{Comparison, Evaluated, Failure, Served, model_with};
-use overact_tier::by_tier;
+use overact_tier::{by_tier, by_tiers};
 
 const TOLERANCE: f64 = 1e-9;
-/// States in the default tier and in the full one.
-const STATES: [usize; 2] = [20, 200];
+/// States in the default, full and nightly tier.
+const STATES: [usize; 3] = [20, 60, 200];
 
 fn described(text: &str) -> Result<(RobotModel, Expected), Failure> {
     let source = Source::new("friction.toml", text);
@@ -33,7 +33,7 @@ fn described(text: &str) -> Result<(RobotModel, Expected), Failure> {
 fn compare(text: &str, compiled: &dyn Model) -> Result<(), Failure> {
     let (model, expected) = described(text)?;
     let parameters = expected.parameters();
-    let all = samples(&expected.mechanism, &parameters, by_tier(STATES), 5, false)?;
+    let all = samples(&expected.mechanism, &parameters, by_tiers(STATES), 5, false)?;
     let truths = all.iter().map(|sample| expected.at(sample));
     let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
     let mut comparison = Comparison::new(TOLERANCE);

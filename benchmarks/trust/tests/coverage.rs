@@ -3,7 +3,7 @@
 //! It takes dozens of identifications, so only the full tier runs it.
 
 use overact_identification::Stage;
-use overact_tier::is_full;
+use overact_tier::{by_tiers, is_full};
 use overact_trust::{Cell, Noise, Subject, Tally, measure};
 use std::path::Path;
 
@@ -34,7 +34,10 @@ fn intervals_contain_the_truth_as_often_as_they_say() {
     if !is_full() {
         return;
     }
-    for (robot, draws, part) in [("five_bar", 60, 0.5), ("dualv", 16, 0.25)] {
+    for (robot, draws, part) in [
+        ("five_bar", by_tiers([0, 30, 60]), 0.5),
+        ("dualv", by_tiers([0, 8, 16]), 0.25),
+    ] {
         let cells = cells(robot, draws, part);
         assert!(cells.len() >= 3);
         for cell in cells {

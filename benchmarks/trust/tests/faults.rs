@@ -2,7 +2,7 @@
 //!
 //! A mean over draws of the noise has the bias of the fault alone.
 
-use overact_tier::{by_tier, is_full};
+use overact_tier::{by_tiers, is_full};
 use overact_trust::{
     Subject,
     faults::{Draws, FaultRow, rows},
@@ -34,7 +34,7 @@ fn of_robot(name: &str, words: &[&str]) -> Vec<FaultRow> {
     let wanted = |fault: &str| words.iter().any(|word| fault.contains(word));
     let draws = Draws {
         part: PART,
-        count: by_tier([2, 5]),
+        count: by_tiers([2, 2, 5]),
     };
     let rows = rows(&path, &subject, draws, &wanted, &|row| println!("{row}"));
     rows.expect("rows")
@@ -55,7 +55,11 @@ fn usable_parameters_are_right_on_average_whatever_the_fault() {
 
 #[test]
 fn data_without_a_fault_are_used() {
-    for robot in by_tier([&["five_bar"][..], &["five_bar", "ankle", "dualv"][..]]) {
+    for robot in by_tiers([
+        &["five_bar"][..],
+        &["five_bar", "dualv"],
+        &["five_bar", "ankle", "dualv"],
+    ]) {
         for row in of_robot(robot, &["none"]) {
             assert_eq!(row.unusable + row.listed + row.refused, 0, "{row}");
         }

@@ -6,14 +6,14 @@ use overact_tests::compiled_backend;
 use overact_tests::support::Backend;
 use overact_tests::support::agreement::Agreement;
 use overact_tests::support::sample::samples;
-use overact_tier::by_tier;
+use overact_tier::by_tiers;
 
 /// Largest difference from the reference, relative to the largest entry of a matrix.
 const TOLERANCE: f64 = 1e-9;
 /// Largest difference in 32 bits.
 const SINGLE: f64 = 2e-3;
-/// States in the default tier and in the full one.
-const STATES: [usize; 2] = [3, 30];
+/// States in the default, full and nightly tier.
+const STATES: [usize; 3] = [3, 10, 30];
 
 /// Backends of a robot with a platform or a skeleton.
 macro_rules! of_pose {
@@ -45,7 +45,7 @@ fn compare(stem: &str, compiled: &dyn Backend) -> Result<(), Failure> {
     let all = samples(
         &robot.expected.mechanism,
         &parameters,
-        by_tier(STATES),
+        by_tiers(STATES),
         47,
         false,
     )?;

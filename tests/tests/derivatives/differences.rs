@@ -10,12 +10,12 @@ use overact_tests::support::Sample;
 use overact_tests::support::backend::{evaluate, matrix};
 use overact_tests::support::derivatives::{differences, displaced, faster};
 use overact_tests::support::sample::samples;
-use overact_tier::by_tier;
+use overact_tier::by_tiers;
 
 /// Largest difference, relative to the largest entry of a matrix.
 const TOLERANCE: f64 = 1e-7;
-/// States of each robot in the default tier and in the full one.
-const STATES: [usize; 2] = [1, 10];
+/// States of each robot in the default, full and nightly tier.
+const STATES: [usize; 3] = [1, 3, 10];
 
 all_robots!(differ);
 
@@ -51,7 +51,7 @@ fn value(
 fn differ(robot: &Robot) -> Result<(), Failure> {
     let parameters = robot.expected.parameters();
     let mechanism = &robot.expected.mechanism;
-    for sample in samples(mechanism, &parameters, by_tier(STATES), 43, false)? {
+    for sample in samples(mechanism, &parameters, by_tiers(STATES), 43, false)? {
         for function in &robot.model.functions {
             let Some((of, by_twist)) = differentiated(function.computes) else {
                 continue;

@@ -13,11 +13,11 @@ use overact_tests::support::agreement::unwound;
 use overact_tests::support::expected::{Expected, with_joints_of_model};
 use overact_tests::support::sample::samples;
 use overact_tests::support::{Agreement, Backend, Evaluated, Failure, Sample, dualv};
-use overact_tier::by_tier;
+use overact_tier::{by_tier, by_tiers};
 
 const TOLERANCE: f64 = 1e-10;
-/// States in the default tier and in the full one.
-const STATES: [usize; 2] = [6, 200];
+/// States in the default, full and nightly tier.
+const STATES: [usize; 3] = [6, 60, 200];
 
 redundant_backend!(Generated, "generated", overact_compiled::DualV);
 redundant_backend!(Kept123, "compiled 123", partitions::kept_123::DualV);
@@ -58,7 +58,7 @@ fn agree(
     let all = samples(
         mechanism,
         &expected.parameters(),
-        by_tier(STATES),
+        by_tiers(STATES),
         41,
         partitions,
     )?;
@@ -205,7 +205,7 @@ fn joints_of_the_model_close_the_reference() -> Result<(), Failure> {
     for sample in samples(
         &mechanism,
         &expected.parameters(),
-        by_tier(STATES),
+        by_tiers(STATES),
         43,
         false,
     )? {

@@ -3,11 +3,11 @@
 use super::{Failure, Robot, all_robots, each};
 use overact_tests::support::sample::samples;
 use overact_tests::support::{Comparison, Evaluated};
-use overact_tier::by_tier;
+use overact_tier::by_tiers;
 
 const TOLERANCE: f64 = 1e-9;
-/// States of each robot in the default tier and in the full one.
-const STATES: [usize; 2] = [5, 100];
+/// States of each robot in the default, full and nightly tier.
+const STATES: [usize; 3] = [5, 15, 100];
 
 all_robots!(agree);
 
@@ -18,7 +18,13 @@ fn agree(robot: &Robot) -> Result<(), Failure> {
         expected,
     } = robot;
     let parameters = expected.parameters();
-    let all = samples(&expected.mechanism, &parameters, by_tier(STATES), 23, false)?;
+    let all = samples(
+        &expected.mechanism,
+        &parameters,
+        by_tiers(STATES),
+        23,
+        false,
+    )?;
     let truths = all.iter().map(|sample| expected.at(sample));
     let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
     let mut comparison = Comparison::new(TOLERANCE);

@@ -9,12 +9,12 @@ use overact_tests::support::expected::Expected;
 use overact_tests::support::library::workspace;
 use overact_tests::support::sample::samples;
 use overact_tests::support::{Backend, Comparison, Evaluated, description, model_with};
-use overact_tier::by_tier;
+use overact_tier::by_tiers;
 
 /// Tolerances in 64 and 32 bits.
 const TOLERANCES: [f64; 2] = [1e-9, 2e-4];
-/// States of each robot in the default tier and in the full one.
-const STATES: [usize; 2] = [10, 200];
+/// States of each robot in the default, full and nightly tier.
+const STATES: [usize; 3] = [10, 40, 200];
 
 /// Backends of a robot with a platform or a skeleton.
 macro_rules! of_pose {
@@ -75,7 +75,13 @@ fn compare(stem: &str, frames: &str, compiled: &dyn Backend) -> Result<(), Failu
     let mechanism = reference(&model.mechanism, workspace(&model));
     let expected = Expected::by_position(&model, mechanism);
     let parameters = expected.parameters();
-    let all = samples(&expected.mechanism, &parameters, by_tier(STATES), 41, false)?;
+    let all = samples(
+        &expected.mechanism,
+        &parameters,
+        by_tiers(STATES),
+        41,
+        false,
+    )?;
     let truths = all.iter().map(|sample| expected.at(sample));
     let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
     let mut comparison = Comparison::new(TOLERANCES[0]);

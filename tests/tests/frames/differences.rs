@@ -13,11 +13,11 @@ use overact_tests::reference::{Mechanism, State};
 use overact_tests::support::Sample;
 use overact_tests::support::backend::evaluate;
 use overact_tests::support::sample::samples;
-use overact_tier::by_tier;
+use overact_tier::by_tiers;
 
 const TOLERANCE: f64 = 1e-7;
-/// States of each robot in the default tier and in the full one.
-const STATES: [usize; 2] = [3, 40];
+/// States of each robot in the default, full and nightly tier.
+const STATES: [usize; 3] = [3, 8, 40];
 
 all_robots!(differ);
 
@@ -54,7 +54,7 @@ fn rates(pose: &DVector<f64>, change: &DVector<f64>) -> DVector<f64> {
 fn differ(robot: &Robot) -> Result<(), Failure> {
     let parameters = robot.expected.parameters();
     let mechanism = &robot.expected.mechanism;
-    for sample in samples(mechanism, &parameters, by_tier(STATES), 29, false)? {
+    for sample in samples(mechanism, &parameters, by_tiers(STATES), 29, false)? {
         for frame in 0..robot.model.mechanism.frames.len() {
             of_frame(robot, mechanism, frame, &sample)?;
         }

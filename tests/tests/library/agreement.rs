@@ -13,18 +13,18 @@ use overact_tests::support::library::described;
 use overact_tests::support::sample::samples;
 use overact_tests::support::served::partitions;
 use overact_tests::support::{Comparison, Evaluated, Failure, Served};
-use overact_tier::by_tier;
+use overact_tier::by_tiers;
 
 const TOLERANCE: f64 = 1e-9;
-/// States of each robot in the default tier and in the full one.
-const STATES: [usize; 2] = [6, 200];
+/// States of each robot in the default, full and nightly tier.
+const STATES: [usize; 3] = [6, 40, 200];
 
 overact_tests::library!(compare);
 
 fn compare(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
     let (model, expected) = described(stem)?;
     let parameters = expected.parameters();
-    let states = by_tier(STATES);
+    let states = by_tiers(STATES);
     let all = samples(&expected.mechanism, &parameters, states, 7, false)?;
     let truths = all.iter().map(|sample| expected.at(sample));
     let truths = truths.collect::<Result<Vec<_>, Failure>>()?;

@@ -14,13 +14,13 @@ use overact_tests::support::expected::Expected;
 use overact_tests::support::library::described;
 use overact_tests::support::sample::samples;
 use overact_tests::support::{Backend, Evaluated, Failure, Sample, Served};
-use overact_tier::by_tier;
+use overact_tier::by_tiers;
 
 const TOLERANCE: f64 = 1e-9;
 /// Rounding of the energy in its differences, in units of the last place.
 const ROUNDING: f64 = 16.0;
-/// States of each robot in the default tier and in the full one.
-const STATES: [usize; 2] = [6, 200];
+/// States of each robot in the default, full and nightly tier.
+const STATES: [usize; 3] = [6, 40, 200];
 
 overact_tests::library!(balance);
 
@@ -29,7 +29,7 @@ fn balance(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
     let backends: [&dyn Backend; 2] = [&Served(compiled), &Evaluated(model)];
     let mut worst = [0.0_f64; 2];
     let columns = expected.parameters();
-    let all = samples(&expected.mechanism, &columns, by_tier(STATES), 17, false)?;
+    let all = samples(&expected.mechanism, &columns, by_tiers(STATES), 17, false)?;
     for sample in all {
         let (sample, chi) = without_friction(expected, &sample);
         let energy =
