@@ -6,6 +6,7 @@ use overact_robot::Error;
 use std::io::{self, IsTerminal, Write};
 
 pub use overact_robot::Problem;
+use overact_robot::{compiler_style, internal_problem};
 
 /// Largest number of codes for which `overact explain` is suggested.
 const EXPLAINED: usize = 4;
@@ -50,7 +51,7 @@ impl Failure {
             Self::Usage(message) => vec![Problem::new(Code::USAGE, message)],
             Self::Refused(message) => vec![Problem::new(Code::NOT_TO_BE_USED, message)],
             Self::Input(error) => error.problems(),
-            Self::Internal(error) => vec![Problem::from(error)],
+            Self::Internal(error) => vec![internal_problem(error)],
         }
     }
 
@@ -60,7 +61,7 @@ impl Failure {
         match self {
             Self::Input(error) => error.render(styled),
             Self::Usage(_) | Self::Refused(_) | Self::Internal(_) => {
-                let texts: Vec<String> = self.problems().iter().map(Problem::to_string).collect();
+                let texts: Vec<String> = self.problems().iter().map(compiler_style).collect();
                 texts.join("\n\n")
             }
         }

@@ -32,10 +32,10 @@ pub struct Description {
     pub payload_bodies: Vec<Payload>,
     /// Named constants that are not angles, in SI units.
     pub constants: Vec<(String, f64)>,
-    /// Magnitudes of the numbers of platform and legs without a name, in SI units, sorted.
+    /// Magnitudes of all numbers of platform and legs that are written without a name, in SI units,
+    /// sorted.
     ///
-    /// A number in generated code that follows from one of them is not named after a constant of
-    /// the same value.
+    /// If one of them equals a constant, generated code does not use the constant's name.
     pub magnitudes: Vec<f64>,
     /// The platform; `None` for a serial or tree robot.
     pub platform: Option<Platform>,

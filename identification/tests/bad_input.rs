@@ -93,7 +93,7 @@ fn cells_are_named_by_line_and_column() {
     let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n0.1,abc,NaN\n0.2,1\n0.3,,2\n");
     let error = log.clone().expect_err("an error");
     assert_eq!(error.problems[0].line, Some(3));
-    assert_eq!(error.problems[0].column.as_deref(), Some("q_1"));
+    assert_eq!(error.problems[0].column_name(), Some("q_1"));
     assert_eq!(
         text(log, folder.path()),
         "log.csv:3: column `q_1`: `abc` is not a number\n  help: cut the log before or after this line, or fill the gap\n\

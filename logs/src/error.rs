@@ -1,4 +1,4 @@
-//! Problems of logs, settings and their fit to a robot.
+//! Problems of descriptions, logs, settings and their fit to a robot.
 //!
 //! Every problem has a location and, if there is one, a remedy. Problems that can be found together
 //! are reported together.
@@ -22,14 +22,24 @@ pub struct Problem {
     pub code: Code,
     /// Message, in one sentence.
     pub message: String,
-    /// File, or name of the run.
+    /// File as the user named it, or name of the run.
     pub file: Option<String>,
     /// Line of the file, counted from 1 (the header of a CSV file is line 1).
     pub line: Option<usize>,
-    /// Name of the column or variable.
-    pub column: Option<String>,
+    /// Column of a table, or place in the line of a text.
+    pub column: Option<Column>,
     /// Remedy.
     pub help: Option<String>,
+}
+
+/// A column: of a table, or of a text.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(untagged)]
+pub enum Column {
+    /// Number of a character in its line, counted from 1.
+    Number(usize),
+    /// Name of a column or variable of a table.
+    Name(String),
 }
 
 impl Problem {
@@ -53,18 +63,27 @@ impl Problem {
         self
     }
 
-    /// Sets the line.
+    /// Sets the line, if there is one.
     #[must_use]
-    pub fn line(mut self, line: usize) -> Self {
-        self.line = Some(line);
+    pub fn line(mut self, line: impl Into<Option<usize>>) -> Self {
+        self.line = line.into();
         self
     }
 
-    /// Sets the column or variable.
+    /// Sets the column or variable of a table.
     #[must_use]
     pub fn column(mut self, column: impl Into<String>) -> Self {
-        self.column = Some(column.into());
+        self.column = Some(Column::Name(column.into()));
         self
+    }
+
+    /// Name of the column or variable of a table.
+    #[must_use]
+    pub fn column_name(&self) -> Option<&str> {
+        match &self.column {
+            Some(Column::Name(name)) => Some(name),
+            Some(Column::Number(_)) | None => None,
+        }
     }
 
     /// Sets the remedy.

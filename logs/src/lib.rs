@@ -67,7 +67,7 @@ mod significant;
 mod unwrapping;
 
 pub use display_names::{called, titled, with_joints};
-pub use error::{Error, Problem, suggestion};
+pub use error::{Column, Error, Problem, suggestion};
 pub use formats::{arrays::Array, parquet_file::write_parquet};
 pub use mapping::{Gain, Mapping, Time, load::Load, scales::Scales};
 pub use period_sums::Periods;

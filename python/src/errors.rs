@@ -60,8 +60,9 @@ fn is_of_description(error: &Error) -> bool {
     }
 }
 
-/// Message, file, line, column and advice.
+/// Message, code, file, line, column and advice.
 type Parts = (
+    String,
     String,
     Option<String>,
     Option<usize>,
@@ -83,6 +84,7 @@ fn parts(problem: Problem) -> Parts {
     });
     (
         problem.message,
+        problem.code.to_string(),
         problem.file,
         problem.line,
         column,

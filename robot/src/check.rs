@@ -119,7 +119,7 @@ fn check_prior(
     let symbols: Vec<_> = named.iter().map(|(name, of, _)| (*name, *of)).collect();
     let prior = prior(description, &named, &mechanism.home.joints);
     for problem in prior.problems(&symbols) {
-        let name = problem.column.unwrap_or_default();
+        let name = problem.column_name().unwrap_or_default();
         let at = description::place(source, &format!("prior.values.{name}"));
         let help = problem.help.unwrap_or_default();
         errors.push(

@@ -2,95 +2,42 @@
 
 use overact_codegen::diagnostic::{Code, Diagnostic};
 use overact_codegen::diagnostic::{Diagnostics, InternalError, Located, Source, visible};
-use serde::{Serialize, Serializer};
+pub use overact_logs::{Column, Problem};
 use std::fmt;
 
-/// Serialises a code as its text.
-fn as_text<S: Serializer>(code: &Code, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_str(code)
-}
-
-/// One problem.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Problem {
-    /// Code under which the problem is explained.
-    #[serde(serialize_with = "as_text")]
-    pub code: Code,
-    /// Message of one sentence.
-    pub message: String,
-    /// File name as the user gave it.
-    pub file: Option<String>,
-    /// Line, counted from 1.
-    pub line: Option<usize>,
-    /// Position in the line.
-    pub column: Option<Column>,
-    /// Advice.
-    pub help: Option<String>,
-}
-
-/// Position in a line.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-#[serde(untagged)]
-pub enum Column {
-    /// Number of a character in a text, counted from 1.
-    Number(usize),
-    /// Name of a column of a table.
-    Name(String),
-}
-
-impl Problem {
-    /// Problem without a location.
-    #[must_use]
-    pub fn new(code: Code, message: impl Into<String>) -> Self {
-        let message = message.into();
-        Self {
-            code,
-            message,
-            file: None,
-            line: None,
-            column: None,
-            help: None,
+/// A problem as compilers print it.
+#[must_use]
+pub fn compiler_style(problem: &Problem) -> String {
+    let mut text = format!("error[{}]: {}", problem.code, visible(&problem.message));
+    if let Some(file) = &problem.file {
+        text += &format!("\n --> {}", visible(file));
+        if let Some(line) = problem.line {
+            text += &format!(":{line}");
+        }
+        if let Some(Column::Number(column)) = &problem.column {
+            text += &format!(":{column}");
         }
     }
-
-    /// Sets the file.
-    #[must_use]
-    pub fn file(self, file: impl Into<String>) -> Self {
-        let file = Some(file.into());
-        Self { file, ..self }
+    if let Some(help) = &problem.help {
+        text += &format!("\n  = help: {}", visible(help));
     }
-
-    /// Sets the line, if there is one.
-    #[must_use]
-    pub fn line(self, line: Option<usize>) -> Self {
-        Self { line, ..self }
-    }
-
-    /// Sets the advice.
-    #[must_use]
-    pub fn help(self, help: impl Into<String>) -> Self {
-        let help = Some(help.into());
-        Self { help, ..self }
-    }
+    text
 }
 
-impl fmt::Display for Problem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "error[{}]: {}", self.code, visible(&self.message))?;
-        if let Some(file) = &self.file {
-            write!(f, "\n --> {}", visible(file))?;
-            if let Some(line) = self.line {
-                write!(f, ":{line}")?;
-            }
-            if let Some(Column::Number(column)) = &self.column {
-                write!(f, ":{column}")?;
-            }
-        }
-        if let Some(help) = &self.help {
-            write!(f, "\n  = help: {}", visible(help))?;
-        }
-        Ok(())
-    }
+/// The problem of an internal error, which has no location.
+#[must_use]
+pub fn internal_problem(error: &InternalError) -> Problem {
+    Problem::new(Code::INTERNAL, error.to_string()).help(InternalError::HELP)
+}
+
+/// The problem of an error of a description.
+fn problem_of(located: Located, diagnostic: &Diagnostic) -> Problem {
+    let mut problem = Problem::new(diagnostic.code, located.message);
+    problem.file = Some(located.file);
+    problem.line = located.line;
+    problem.column = located.column.map(Column::Number);
+    problem.help = located.help;
+    problem
 }
 
 /// Error of reading, compiling or using a robot.
@@ -121,14 +68,7 @@ impl Error {
                 diagnostics,
             } => {
                 let located = diagnostics.located(source).into_iter().zip(diagnostics);
-                let problem = |(l, d): (Located, &Diagnostic)| Problem {
-                    code: d.code,
-                    message: l.message,
-                    file: Some(l.file),
-                    line: l.line,
-                    column: l.column.map(Column::Number),
-                    help: l.help,
-                };
+                let problem = |(own, diagnostic)| problem_of(own, diagnostic);
                 located.map(problem).collect()
             }
         }
@@ -161,7 +101,7 @@ impl Error {
                 texts.join("\n\n")
             }
             Self::Problems(problems) => {
-                let texts: Vec<String> = problems.iter().map(Problem::to_string).collect();
+                let texts: Vec<String> = problems.iter().map(compiler_style).collect();
                 texts.join("\n\n")
             }
         }
@@ -176,13 +116,6 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// Converts an internal error to a problem without a location.
-impl From<&InternalError> for Problem {
-    fn from(error: &InternalError) -> Self {
-        Self::new(Code::INTERNAL, error.to_string()).help(InternalError::HELP)
-    }
-}
-
 impl From<Problem> for Error {
     fn from(problem: Problem) -> Self {
         Self::Problems(vec![problem])
@@ -191,15 +124,7 @@ impl From<Problem> for Error {
 
 impl From<overact_identification::Error> for Error {
     fn from(error: overact_identification::Error) -> Self {
-        let problem = |p: overact_identification::Problem| Problem {
-            code: p.code,
-            message: p.message,
-            file: p.file,
-            line: p.line,
-            column: p.column.map(Column::Name),
-            help: p.help,
-        };
-        Self::Problems(error.problems.into_iter().map(problem).collect())
+        Self::Problems(error.problems)
     }
 }
 

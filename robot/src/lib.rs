@@ -81,7 +81,7 @@ pub use calibration::variants::Variants;
 pub use check::{CheckedFile, check, check_text};
 pub use compiled_file::CompiledFile;
 pub use counted::counted;
-pub use error::{Column, Error, Problem};
+pub use error::{Column, Error, Problem, compiler_style, internal_problem};
 pub use excitation::{
     CaseOfRuns, Excitation, ExcitationEffort, JudgedRuns, Limit, LimitKind, Origin,
 };

@@ -46,30 +46,25 @@ const REFUSED: [&str; 7] = [
 /// Largest number of draws for each random robot.
 const DRAWS: u64 = 20;
 
-/// Robots of the default tier: planar, spatial and redundant platforms, parasitic motion, chains.
-const ROBOTS: [&str; 7] = [
-    "delta",
-    "dualv",
-    "excavator",
-    "five_bar",
-    "palletiser",
-    "spatial_3prs",
-    "tricept",
-];
+/// Robots of the default tier: planar and redundant platforms, parasitic motion, chains.
+const ROBOTS: [&str; 4] = ["dualv", "excavator", "five_bar", "spatial_3prs"];
 /// Further robots of the full tier.
-const MORE: [&str; 12] = [
+const MORE: [&str; 15] = [
     "ankle",
+    "delta",
     "exechon",
     "four_bar",
     "hexapod",
     "humanoid_leg",
     "orthoglide",
+    "palletiser",
     "planar_3rrr",
     "planar_4prr",
     "reachy_mini",
     "schoenflies_4",
     "spherical_4rrr",
     "three_leg_point",
+    "tricept",
 ];
 
 /// Robots without loops of the default tier and of the full one.
@@ -250,12 +245,12 @@ fn random(draw: impl Fn(u64) -> String, count: u64) -> Result<(), Failure> {
 
 #[test]
 fn random_mechanisms_agree_with_springs() -> Result<(), Failure> {
-    random(|seed| Sketch::draw(seed).text(), drawn([8, 16, 104]))
+    random(|seed| Sketch::draw(seed).text(), drawn([4, 12, 104]))
 }
 
 #[test]
 fn random_chains_agree_with_springs() -> Result<(), Failure> {
-    random(skeleton, drawn([2, 4, 25]))
+    random(skeleton, drawn([1, 4, 25]))
 }
 
 #[test]

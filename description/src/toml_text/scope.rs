@@ -33,7 +33,7 @@ impl Names for Scope {
     }
 }
 
-/// The names of an expression whose numbers are recorded.
+/// Looks up names, and records the numbers of the expression.
 struct RecordedNames<'s, 'c, 't> {
     scope: &'s Scope,
     context: &'c Context<'t>,

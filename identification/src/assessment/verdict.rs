@@ -117,10 +117,10 @@ fn of_estimate(estimate: &Estimate, checks: &[Check]) -> StageVerdict {
     }
 }
 
-/// A failed check is reported in full if it explains this fraction of the largest one's part.
+/// A failed check is reported in full if it explains at least this fraction of what the best one explains.
 const WORTH_TELLING: f64 = 0.5;
 
-/// It also leaves at most this multiple of what the largest one leaves.
+/// It also leaves at most this multiple of what the best one leaves.
 ///
 /// A cause that explains nearly everything makes others that explain much less unlikely.
 const LEAVES_AT_MOST: f64 = 10.0;
@@ -134,8 +134,9 @@ pub struct FailedChecks<'a> {
     pub reported: Vec<(usize, &'a Check)>,
     /// Names of the other failed checks.
     ///
-    /// One fault resembles others in the torques. Checks that explain much less than another one
-    /// are only named. All such checks are only named if the data are certainly wrong.
+    /// One fault resembles others in the torques. Checks that explain much less than the best one
+    /// are only named. If the data are certainly wrong, all checks that explain a part are only
+    /// named.
     pub named_only: Vec<&'static str>,
 }
 

@@ -5,17 +5,15 @@
 //! σ_j² J_ji J_jl in lines i and l. The `moments` are the means of J_ji J_jl over all samples.
 
 use nalgebra::DMatrix;
-use overact::{Function, Model};
+use overact::Model;
 use rayon::prelude::*;
 
 use super::known::Split;
 use crate::{
     blocks::{BLOCK, slice},
-    kinematics::{self, Motion, Motions},
+    kinematics::{self, Motion},
     regression::{
-        projection::Projection,
-        sink::{LARGEST_STRETCHES, LineSink, Plan, observed},
-        states::SampledStates,
+        pass::Pass, projection::Projection, sink::LARGEST_STRETCHES, states::SampledStates,
         system::System,
     },
     settings::Settings,
@@ -93,43 +91,35 @@ impl Observer<'_> {
         equations: &mut Equations,
         progress: &dyn Fn(&str, usize, usize),
     ) -> Result<usize, Error> {
-        let (log, budget) = (&runs[number], LARGEST_STRETCHES / runs.len());
-        let sizes = self.model.info().sizes;
-        let (r, n) = (sizes.dof, sizes.actuators);
-        let mut motions = Motions::new(self.model, log, self.settings)?.unwatched();
-        let samples = motions.samples();
-        let decimator = self
-            .settings
-            .decimator(self.settings.decimation, log.sampling_frequency())?;
-        let width = self.columns() + 1;
-        let plan = Plan::new(decimator.kept(samples), budget / (r * width).max(1));
-        let sink = |line: usize| {
-            let limit = self.settings.standstill_velocity.get(line).copied();
-            let stream = |width| decimator.stream(width, samples);
-            LineSink::new(&plan, stream, self.columns(), false, limit)
+        let pass = Pass {
+            model: self.model,
+            settings: self.settings,
+            log: &runs[number],
+            number,
+            columns: self.columns(),
+            projections: 1,
+            budget: LARGEST_STRETCHES / runs.len(),
         };
-        let mut sinks: Vec<LineSink> = (0..r).map(sink).collect::<Result<_, Error>>()?;
-        while let Some(motion) = motions.next()? {
+        let mut moments = Vec::new();
+        let rows = |motion: &Motion| {
             let chunks: Vec<Chunk> = (0..motion.samples.div_ceil(BLOCK))
                 .into_par_iter()
-                .map(|index| self.chunk(&motion, index * BLOCK))
+                .map(|index| self.chunk(motion, index * BLOCK))
                 .collect::<Result<_, Error>>()?;
-            sinks.par_iter_mut().enumerate().for_each(|(line, sink)| {
-                for (place, chunk) in chunks.iter().enumerate() {
-                    let velocities = motion.velocities.iter().copied();
-                    let velocities = velocities.skip(place * BLOCK * n + line).step_by(n);
-                    sink.push(&plan, &chunk.lines[line], None, velocities);
-                }
+            let own = chunks.into_iter().map(|chunk| {
+                moments.push(chunk.moments);
+                vec![chunk.lines]
             });
-            for chunk in &chunks {
-                let own = equations.moments.iter_mut().zip(&chunk.moments);
-                own.for_each(|(all, more)| *all += more);
-            }
-            progress(log.name(), motions.done(), log.samples());
+            Ok(own.collect())
+        };
+        let (systems, samples) = pass.equations(rows, progress)?;
+        systems
+            .into_iter()
+            .for_each(|own| equations.system.extend(own));
+        for chunk in moments {
+            let own = equations.moments.iter_mut().zip(chunk);
+            own.for_each(|(all, more)| *all += more);
         }
-        equations
-            .system
-            .extend(observed(number, &plan, sinks, None));
         Ok(samples)
     }
 
@@ -141,13 +131,9 @@ impl Observer<'_> {
         let at = |error: overact::SampleError| -> Problem {
             motion.outside(first + error.sample, error.error)
         };
-        let pose = slice(&motion.pose, sizes.pose, first, count);
         let states = SampledStates::of_motion(motion, first, count);
         let torques = slice(&motion.torques, n, first, count);
-        let mut jacobians = vec![0.0; count * n * r];
-        self.model
-            .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
-            .map_err(at)?;
+        let jacobians = motion.inverse_jacobians(self.model, first, count)?;
         let known = self.split.known.iter().map(|own| own.column);
         let base = self.split.base.columns.iter().copied();
         let picked: Vec<usize> = base.chain(known).collect();

@@ -3,20 +3,17 @@
 use rayon::prelude::*;
 
 use nalgebra::DMatrix;
-use overact::{Function, Model};
+use overact::Model;
 
 use super::{Fields, columns::Extended};
 use crate::{
-    blocks::{BLOCK, slice},
-    kinematics::{
-        self, Motion, Motions,
-        conditioning::{KeptActuators, home_scales},
-    },
+    blocks::BLOCK,
+    kinematics::{self, Motion},
     regression::{
-        chunk::projected,
-        observer,
+        Chunk, observer,
+        pass::{BlockRows, Pass, in_projections},
         projection::Projection,
-        sink::{LARGEST_STRETCHES, LineSink, Plan, observed},
+        sink::LARGEST_STRETCHES,
         states::SampledStates,
         system::System,
     },
@@ -79,55 +76,41 @@ impl Observer<'_> {
         systems: &mut [Result<System, Error>],
         progress: &dyn Fn(&str, usize, usize),
     ) -> Result<(), Error> {
-        let (log, budget) = (&runs[number], LARGEST_STRETCHES / runs.len());
-        let sizes = self.model.info().sizes;
-        let (r, n) = (sizes.dof, sizes.actuators);
-        let mut motions = Motions::new(self.model, log, self.settings)?.unwatched();
-        let samples = motions.samples();
-        let decimator = self
-            .settings
-            .decimator(self.settings.decimation, log.sampling_frequency())?;
-        let columns = self.extended.len();
-        let values = r * (columns + 1) * systems.len();
-        let plan = Plan::new(decimator.kept(samples), budget / values.max(1));
-        let sink = |place: usize| {
-            let limit = self.settings.standstill_velocity.get(place % r).copied();
-            let stream = |width| decimator.stream(width, samples);
-            LineSink::new(&plan, stream, columns, false, limit)
+        let pass = Pass {
+            model: self.model,
+            settings: self.settings,
+            log: &runs[number],
+            number,
+            columns: self.extended.len(),
+            projections: systems.len(),
+            budget: LARGEST_STRETCHES / runs.len(),
         };
-        let sinks = (0..r * systems.len()).map(sink);
-        let mut sinks = sinks.collect::<Result<Vec<LineSink>, Error>>()?;
         let mut failed: Vec<Option<Error>> = systems.iter().map(|_| None).collect();
-        while let Some(motion) = motions.next()? {
+        let rows = |motion: &Motion| {
             let blocks = motion.samples.div_ceil(BLOCK);
-            let chunks = observer.chunks(&motion, 0..blocks, &mut failed)?;
-            let fields: Vec<FieldRows> = (0..chunks.len())
-                .into_par_iter()
-                .map(|place| self.field_rows(observer, &motion, place * BLOCK))
-                .collect::<Result<_, Error>>()?;
-            sinks.par_iter_mut().enumerate().for_each(|(index, sink)| {
-                let (projection, line) = (index / r, index % r);
-                if failed[projection].is_some() {
-                    return;
-                }
-                for (place, (chunk, fields)) in chunks.iter().zip(&fields).enumerate() {
-                    let (rows, fields) =
-                        (&chunk.lines[projection][line], &fields[projection][line]);
-                    let rows = joined(rows, fields, chunk.samples());
-                    let velocities = motion.velocities.iter().copied();
-                    let velocities = velocities.skip(place * BLOCK * n + line).step_by(n);
-                    sink.push(&plan, &rows, None, velocities);
-                }
-            });
-            progress(log.name(), motions.done(), log.samples());
-        }
-        progress(log.name(), log.samples(), log.samples());
-        let mut sinks = sinks.into_iter();
-        for (system, failure) in systems.iter_mut().zip(failed) {
-            let own: Vec<LineSink> = sinks.by_ref().take(r).collect();
+            let chunks = observer.chunks(motion, 0..blocks, &mut failed)?;
+            let failed = &failed;
+            let block = |(place, chunk): (usize, &Chunk)| {
+                let fields = self.field_rows(observer, motion, place * BLOCK)?;
+                let of_projection = |(projection, fields): (usize, Vec<Vec<f64>>)| {
+                    if failed[projection].is_some() {
+                        return Vec::new();
+                    }
+                    let lines = chunk.lines[projection].iter().zip(&fields);
+                    lines
+                        .map(|(rows, fields)| joined(rows, fields, chunk.samples()))
+                        .collect()
+                };
+                Ok(fields.into_iter().enumerate().map(of_projection).collect())
+            };
+            let blocks = chunks.par_iter().enumerate().map(block);
+            blocks.collect::<Result<Vec<BlockRows>, Error>>()
+        };
+        let (equations, _) = pass.equations(rows, progress)?;
+        for ((system, own), failure) in systems.iter_mut().zip(equations).zip(failed) {
             match (system.as_mut(), failure) {
                 (Ok(_), Some(failure)) => *system = Err(failure),
-                (Ok(system), None) => system.extend(observed(number, &plan, own, None)),
+                (Ok(system), None) => system.extend(own),
                 (Err(_), _) => {}
             }
         }
@@ -141,12 +124,10 @@ impl Observer<'_> {
         motion: &Motion,
         first: usize,
     ) -> Result<FieldRows, Error> {
-        let info = self.model.info();
-        let (r, n) = (info.sizes.dof, info.sizes.actuators);
+        let r = self.model.info().sizes.dof;
         let count = BLOCK.min(motion.samples - first);
         let outside =
             |error: overact::SampleError| motion.outside(first + error.sample, error.error);
-        let pose = slice(&motion.pose, info.sizes.pose, first, count);
         let rest = vec![0.0; count * r];
         let mut lines: Vec<Vec<f64>> = vec![Vec::new(); r];
         let mut parts: Vec<(usize, Vec<Vec<f64>>)> = Vec::new();
@@ -169,20 +150,13 @@ impl Observer<'_> {
                 }
             }
         }
-        let mut jacobians = vec![0.0; count * n * r];
-        self.model
-            .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
-            .map_err(outside)?;
-        let scales = home_scales(self.model);
-        let of = |projection: &Projection| match projection {
-            Projection::Platform => lines.clone(),
-            _ => {
-                let kept = projection.kept(&info).unwrap_or_else(|| (0..n).collect());
-                let choice = KeptActuators::new(kept, &scales);
-                projected(&lines, &choice, &jacobians, n * r).0
-            }
-        };
-        Ok(observer.projections.iter().map(of).collect())
+        let jacobians = motion.inverse_jacobians(self.model, first, count)?;
+        Ok(in_projections(
+            self.model,
+            observer.projections,
+            &lines,
+            &jacobians,
+        ))
     }
 }
 

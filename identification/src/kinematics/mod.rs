@@ -212,8 +212,9 @@ impl<'a> Motions<'a> {
     }
 }
 
-/// Forces on the actuators' coordinates for logged torques, and the reverse: the tension of a cable
-/// acts against its length.
+/// Turns the sign of the cables' torques: a tension t is the force -t on the cable's length.
+///
+/// Applied twice, it gives the torques again.
 pub(crate) fn actuator_forces(model: &dyn Model, mut torques: Vec<f64>) -> Vec<f64> {
     let pulls = model.pulls();
     if pulls.is_empty() {

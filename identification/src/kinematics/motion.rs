@@ -1,7 +1,9 @@
 //! Motion of the platform over some samples.
 
-use overact::Code;
+use overact::{Code, Function, Model};
 use overact_logs::{Load, Problem};
+
+use crate::blocks::slice;
 
 /// Motion of the platform and actuator torques in some successive samples of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +29,9 @@ pub struct Motion {
     pub acceleration: Vec<f64>,
     /// Joint velocities of the actuators, samples × n (m/s, rad/s).
     pub velocities: Vec<f64>,
-    /// Unfiltered torques without known ones, samples × n (N, N m).
+    /// Torques minus known ones, samples × n (N, N m); filtered only with `filter_torques`.
+    ///
+    /// Those of cables are forces on their lengths, so they are negative.
     pub torques: Vec<f64>,
     /// Known torques and those of held parameters, samples × n (N, N m); empty without held
     /// parameters.
@@ -62,6 +66,25 @@ impl Motion {
             self.sampling_frequency,
             error,
         )
+    }
+
+    /// Jacobians J_p^inv of `count` samples from number `first` on, row by row.
+    ///
+    /// # Errors
+    /// A sample at which the model has no value.
+    pub(crate) fn inverse_jacobians(
+        &self,
+        model: &dyn Model,
+        first: usize,
+        count: usize,
+    ) -> Result<Vec<f64>, Problem> {
+        let sizes = model.info().sizes;
+        let pose = slice(&self.pose, sizes.pose, first, count);
+        let mut jacobians = vec![0.0; count * sizes.actuators * sizes.dof];
+        model
+            .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
+            .map_err(|error| self.outside(first + error.sample, error.error))?;
+        Ok(jacobians)
     }
 
     /// Appends the following samples.

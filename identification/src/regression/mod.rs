@@ -5,6 +5,7 @@
 //! - `collect_rows`: numbers of the model in rows;
 //! - `chunk`, `observer`, `observation`: successive samples as equations; options of the pass over a
 //!   run; the pass;
+//! - `pass`: the pass over a run for equations of other kinds;
 //! - `instruments`: equations at the motion of the instruments, in step with the run;
 //! - `sink`, `factor`: decimated equations as R factors, stretches and points of plots;
 //! - `update`: update of an R factor;
@@ -27,6 +28,7 @@ mod friction;
 mod instruments;
 pub(crate) mod observation;
 pub(crate) mod observer;
+pub(crate) mod pass;
 pub(crate) mod phase_sums;
 pub(crate) mod points;
 pub(crate) mod projection;

@@ -250,15 +250,8 @@ impl Observer<'_> {
         let info = self.model.info();
         let (r, n) = (info.sizes.dof, info.sizes.actuators);
         let count = BLOCK.min(motion.samples - first);
-        let at = |error: overact::SampleError| {
-            Error::from(motion.outside(first + error.sample, error.error))
-        };
-        let pose = slice(&motion.pose, info.sizes.pose, first, count);
         let platform = self.platform_rows(motion, first, count)?;
-        let mut jacobians = vec![0.0; count * n * r];
-        self.model
-            .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
-            .map_err(at)?;
+        let jacobians = motion.inverse_jacobians(self.model, first, count)?;
         let mut chunk = Chunk {
             lines: Vec::new(),
             subtracted: Vec::new(),
@@ -299,7 +292,7 @@ impl Observer<'_> {
 
     /// Rows of Γ¹ of `count` samples from number `first` of the motion on, line by line.
     ///
-    /// What was subtracted from Y is a last column, if parameters are held.
+    /// If parameters are held, the last column is their contribution, which was subtracted from Y.
     fn platform_rows(
         &self,
         motion: &Motion,

@@ -232,7 +232,7 @@ impl LineSink {
         Self { total, ..self }
     }
 
-    /// Takes what was subtracted from the measurement in the rows that are pushed next.
+    /// Call before `push`: the held parameters' part of the measurement, for the same rows.
     pub(crate) fn subtracted(&mut self, values: &[f64]) {
         if let Some(total) = &mut self.total {
             total.decimation.push(values, &mut total.subtracted);

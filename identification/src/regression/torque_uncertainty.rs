@@ -10,22 +10,18 @@
 //! Parameters that were known exactly are an exception: this covariance is too large for them.
 
 use nalgebra::DMatrix;
-use overact::Function;
 
 use super::{
-    chunk::projected,
+    Chunk,
     observer::Observer,
+    pass::{BlockRows, Pass, in_projections},
     projection::Projection,
-    sink::{LineSink, Plan, observed},
     system::System,
     uncertainty_propagation::PropagatedUncertainty,
 };
 use crate::{
     blocks::{BLOCK, slice},
-    kinematics::{
-        Motion, Motions,
-        conditioning::{KeptActuators, home_scales},
-    },
+    kinematics::Motion,
 };
 use overact_logs::{Error, Log};
 
@@ -73,47 +69,37 @@ impl TorqueCorrection<'_> {
         log: &Log,
         systems: &mut [System],
     ) -> Result<(), Error> {
-        let (model, settings) = (observer.model, observer.settings);
-        let sizes = model.info().sizes;
-        let (r, n, count) = (sizes.dof, sizes.actuators, self.actuators.len());
-        let mut motions = Motions::new(model, log, settings)?.unwatched();
-        let samples = motions.samples();
-        let decimator = settings.decimator(settings.decimation, log.sampling_frequency())?;
-        let plan = Plan::new(decimator.kept(samples), 0);
-        let width = observer.base.len() + count;
-        let sink = |place: usize| {
-            let limit = settings.standstill_velocity.get(place % r).copied();
-            let stream = |width| decimator.stream(width, samples);
-            LineSink::new(&plan, stream, width - 1, false, limit)
+        let count = self.actuators.len();
+        let pass = Pass {
+            model: observer.model,
+            settings: observer.settings,
+            log,
+            number,
+            columns: observer.base.len() + count - 1,
+            projections: systems.len(),
+            budget: 0,
         };
-        let sinks = (0..r * systems.len()).map(sink);
-        let mut sinks = sinks.collect::<Result<Vec<LineSink>, Error>>()?;
         let mut failed: Vec<Option<Error>> = systems.iter().map(|_| None).collect();
-        while let Some(motion) = motions.next()? {
+        let rows = |motion: &Motion| {
             let blocks = motion.samples.div_ceil(BLOCK);
-            let chunks = observer.chunks(&motion, 0..blocks, &mut failed)?;
-            for (place, chunk) in chunks.iter().enumerate() {
-                let own = self.contributions(observer, &motion, place * BLOCK)?;
-                for (index, sink) in sinks.iter_mut().enumerate() {
-                    let (projection, line) = (index / r, index % r);
+            let chunks = observer.chunks(motion, 0..blocks, &mut failed)?;
+            let block = |(place, chunk): (usize, &Chunk)| {
+                let own = self.contributions(observer, motion, place * BLOCK)?;
+                let of_projection = |(projection, own): (usize, Vec<Vec<f64>>)| {
                     if failed[projection].is_some() {
-                        continue;
+                        return Vec::new();
                     }
-                    let rows = joined(
-                        &chunk.lines[projection][line],
-                        &own[projection][line],
-                        count,
-                    );
-                    let velocities = motion.velocities.iter().copied();
-                    let velocities = velocities.skip(place * BLOCK * n + line).step_by(n);
-                    sink.push(&plan, &rows, None, velocities);
-                }
-            }
-        }
-        let mut sinks = sinks.into_iter();
-        for system in systems {
-            let own: Vec<LineSink> = sinks.by_ref().take(r).collect();
-            system.extend(observed(number, &plan, own, None));
+                    let lines = chunk.lines[projection].iter().zip(&own);
+                    lines.map(|(rows, own)| joined(rows, own, count)).collect()
+                };
+                Ok(own.into_iter().enumerate().map(of_projection).collect())
+            };
+            let blocks = chunks.iter().enumerate().map(block);
+            blocks.collect::<Result<Vec<BlockRows>, Error>>()
+        };
+        let (equations, _) = pass.equations(rows, &|_, _, _| {})?;
+        for (system, own) in systems.iter_mut().zip(equations) {
+            system.extend(own);
         }
         Ok(())
     }
@@ -130,13 +116,8 @@ impl TorqueCorrection<'_> {
         let info = observer.model.info();
         let (r, n) = (info.sizes.dof, info.sizes.actuators);
         let count = BLOCK.min(motion.samples - first);
-        let pose = slice(&motion.pose, info.sizes.pose, first, count);
         let torques = slice(&motion.torques, n, first, count);
-        let mut jacobians = vec![0.0; count * n * r];
-        observer
-            .model
-            .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
-            .map_err(|error| motion.outside(first + error.sample, error.error))?;
+        let jacobians = motion.inverse_jacobians(observer.model, first, count)?;
         let velocities = slice(&motion.velocities, n, first, count);
         let of_line = |line: usize| -> Vec<f64> {
             let entry = |sample: usize, number: usize| {
@@ -151,16 +132,13 @@ impl TorqueCorrection<'_> {
                 .collect()
         };
         let platform: Vec<Vec<f64>> = (0..r).map(of_line).collect();
-        let scales = home_scales(observer.model);
-        let lines = |projection: &Projection| match projection {
-            Projection::Platform => platform.clone(),
-            _ => {
-                let kept = projection.kept(&info).unwrap_or_else(|| (0..n).collect());
-                let choice = KeptActuators::new(kept, &scales);
-                projected(&platform, &choice, &jacobians, n * r).0
-            }
-        };
-        Ok(observer.projections.iter().map(lines).collect())
+        let projections = observer.projections;
+        Ok(in_projections(
+            observer.model,
+            projections,
+            &platform,
+            &jacobians,
+        ))
     }
 }
 

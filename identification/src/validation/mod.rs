@@ -288,11 +288,7 @@ impl PredictionRows<'_> {
         let (n, r) = (info.sizes.actuators, info.sizes.dof);
         let count = BLOCK.min(motion.samples - first);
         let pose = slice(&motion.pose, info.sizes.pose, first, count);
-        let mut jacobians = vec![0.0; count * n * r];
-        observer
-            .model
-            .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
-            .map_err(|error| motion.outside(first + error.sample, error.error))?;
+        let jacobians = motion.inverse_jacobians(observer.model, first, count)?;
         let closures = if layout.closure() {
             closures(observer.model, pose, count)
         } else {

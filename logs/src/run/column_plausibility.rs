@@ -9,7 +9,6 @@ use crate::{
     display_names::called,
     error::{Error, Problem},
     run::log::Log,
-    samples::Samples,
     significant,
 };
 
@@ -52,16 +51,7 @@ impl Log {
     /// Positions and torques that look swapped, columns with two meanings, velocities that do not
     /// belong to the positions; a file that cannot be read any more.
     pub fn check_column_plausibility(&self, actuators: &[&str]) -> Result<(), Error> {
-        let wanted = LOOKED_AT.min(self.samples());
-        let mut samples = Samples::default();
-        let mut reader = self.reader()?;
-        while samples.positions.len() < wanted * self.actuators()
-            && let Some(block) = reader.next()?
-        {
-            samples.positions.extend(block.positions);
-            samples.torques.extend(block.torques);
-            samples.velocities.extend(block.velocities);
-        }
+        let samples = self.first_samples(LOOKED_AT)?;
         let names: Vec<String> = actuators.iter().map(|name| called(name)).collect();
         let found = Columns {
             positions: columns(&samples.positions, self.actuators()),

@@ -95,9 +95,8 @@ impl<'a> Joined<'a> {
         self.has_ended
     }
 
-    /// First of the uniform times at which all files have values; `None` if a file is empty.
-    ///
-    /// It is given by the start of the first file, and the number of steps after it.
+    /// The first uniform time at which all files have values, as the start of the first file and
+    /// the number of steps from there; `None` if a file is empty.
     fn begin(&mut self, rate: f64) -> Result<Option<(f64, u64)>, Error> {
         let (mut start, mut latest) = (None, f64::NEG_INFINITY);
         for part in &mut self.parts {

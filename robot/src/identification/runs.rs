@@ -178,7 +178,7 @@ impl Robot {
         let mut error = error;
         for problem in &mut error.problems {
             let of_columns = [Code::LOG_COLUMNS, Code::SAME_COLUMN].contains(&problem.code);
-            if let (true, Some(column)) = (of_columns, &problem.column) {
+            if let (true, Some(column)) = (of_columns, problem.column_name()) {
                 let place = self.place_of_column(column);
                 let help = match problem.help.take() {
                     Some(help) if help.ends_with('?') => {

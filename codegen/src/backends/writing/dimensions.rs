@@ -3,9 +3,9 @@
 //! Constant folding turns the numbers of a description into others. A number that is a simple
 //! expression of named constants, a power, product or quotient of two, gets a name and the
 //! expression. If several equally simple expressions have the same value, none is used, since the
-//! intended one is unknown. The same holds for a number that an equally simple or simpler expression
-//! of a number without a name has, as 1/(20 mm) of a pitch and `50 rad/m` of a gear. Numbers of one
-//! or two digits may equal a long expression by chance.
+//! intended one is unknown. A number also stays without a name if an unnamed number of the text
+//! explains it as simply: 50 may be 1/(20 mm) of a named pitch, or the `50 rad/m` of a gear. Numbers
+//! of one or two digits may equal a long expression by chance.
 
 use crate::model::RobotModel;
 

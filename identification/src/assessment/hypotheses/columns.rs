@@ -20,7 +20,7 @@ pub(crate) enum FaultHypothesis {
     Delay,
     /// The torques are smoother than the motion, with s = ½ Σ w t² of a symmetric filter w(t) (s²).
     ///
-    /// The column omits the effect on dry friction. It serves to find the fault.
+    /// Finds the fault: the column leaves out dry friction.
     Smoothing,
     /// The same with the effect on dry friction, to compute the harm.
     SmoothingWithFriction,

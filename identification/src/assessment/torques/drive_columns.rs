@@ -6,7 +6,7 @@
 //! twice.
 
 use nalgebra::DMatrix;
-use overact::{Function, Model};
+use overact::Model;
 
 use super::fault_residual::Columns;
 use crate::{
@@ -92,11 +92,7 @@ fn add_run(
             };
             let states = SampledStates::of_motion(&motion, first, count);
             let mut lines = columns.evaluate(model, &states, 2 * n + 1).map_err(at)?;
-            let pose = slice(&motion.pose, info.sizes.pose, first, count);
-            let mut jacobians = vec![0.0; count * n * r];
-            model
-                .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
-                .map_err(at)?;
+            let jacobians = motion.inverse_jacobians(model, first, count)?;
             let jacobians = DMatrix::from_row_slice(count * n, r, &jacobians);
             let torques = slice(&motion.torques, n, first, count);
             let velocities = slice(&motion.velocities, n, first, count);

@@ -6,7 +6,7 @@
 //! closure does not show need one pass each.
 
 use nalgebra::{DMatrix, DVector};
-use overact::{Function, Model, StandardParameter};
+use overact::{Model, StandardParameter};
 
 use crate::{
     blocks::{BLOCK, slice},
@@ -283,7 +283,6 @@ fn run_factors(
             let at = |error: overact::SampleError| {
                 Error::from(motion.outside(first + error.sample, error.error))
             };
-            let pose = slice(&motion.pose, info.sizes.pose, first, count);
             let states = SampledStates::of_motion(&motion, first, count);
             let evaluate = |states: &SampledStates<'_>| {
                 let lines = columns.evaluate(model, states, &base.columns, more);
@@ -307,10 +306,7 @@ fn run_factors(
                     }
                 }
             }
-            let mut jacobians = vec![0.0; count * n * r];
-            model
-                .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
-                .map_err(at)?;
+            let jacobians = motion.inverse_jacobians(model, first, count)?;
             let torques = slice(&motion.torques, n, first, count);
             for (line, rows) in lines.iter_mut().enumerate() {
                 for (sample, row) in rows.chunks_exact_mut(width).enumerate() {

@@ -11,9 +11,9 @@
 //! **Dead band.** Near standstill, the sign of a measured velocity is noise. Within a dead band the
 //! columns fs can be zero.
 //!
-//! **Described asymmetric friction** is treated alike. If the mean sign over the interval belongs
-//! to neither direction, both columns contribute, derived from their sum, the column of the sign.
-//! Stribeck friction has its own mean over the interval.
+//! **Described asymmetric friction** is treated alike. If the velocity reverses within the interval,
+//! its mean sign lies between -1 and 1. Both columns then get a share of their sum, which is the
+//! column of the sign. Stribeck friction has its own mean over the interval.
 
 mod held;
 

@@ -13,6 +13,7 @@ use crate::{
     mapping::load::Load,
     period_sums::{MeanOfOtherPeriods, Periods},
     run::{block_ranges::BlockRanges, rows, source::Files, time_range},
+    samples::Samples,
 };
 
 use reader::Rows;
@@ -118,25 +119,13 @@ impl Log {
             }
         }
         Error::check(problems)?;
+        let samples = positions.len() / actuators;
+        let source = Source::Memory([positions.into(), torques.into(), Arc::default()]);
+        let log = Self::plain(source, name, sampling_frequency, actuators);
         Ok(Self {
-            name,
-            sampling_frequency,
-            actuators,
-            first: 0,
-            samples: positions.len() / actuators,
-            source: Source::Memory([positions.into(), torques.into(), Arc::default()]),
-            offsets: vec![0.0; actuators],
-            torque_factors: vec![1.0; actuators],
+            samples,
             payload,
-            payload_name: None,
-            session: None,
-            instruments: None,
-            note: None,
-            is_unwrapped: false,
-            is_resampled: false,
-            stretch: None,
-            ranges: None,
-            first_time: 0.0,
+            ..log
         })
     }
 
@@ -228,23 +217,18 @@ impl Log {
         }
     }
 
-    /// A run that stays in its files.
-    pub(crate) fn in_files(
-        files: Files,
-        sampling_frequency: f64,
-        samples: usize,
-        payload: bool,
-    ) -> Self {
+    /// A run without samples, payload and notes.
+    fn plain(source: Source, name: String, sampling_frequency: f64, actuators: usize) -> Self {
         Self {
-            name: files.name().to_owned(),
+            name,
             sampling_frequency,
-            offsets: vec![0.0; files.actuators()],
-            torque_factors: vec![1.0; files.actuators()],
-            actuators: files.actuators(),
+            actuators,
             first: 0,
-            samples,
-            source: Source::Files(Box::new(files)),
-            payload,
+            samples: 0,
+            source,
+            offsets: vec![0.0; actuators],
+            torque_factors: vec![1.0; actuators],
+            payload: false,
             payload_name: None,
             session: None,
             instruments: None,
@@ -254,6 +238,23 @@ impl Log {
             stretch: None,
             ranges: None,
             first_time: 0.0,
+        }
+    }
+
+    /// A run that stays in its files.
+    pub(crate) fn in_files(
+        files: Files,
+        sampling_frequency: f64,
+        samples: usize,
+        payload: bool,
+    ) -> Self {
+        let (name, actuators) = (files.name().to_owned(), files.actuators());
+        let source = Source::Files(Box::new(files));
+        let log = Self::plain(source, name, sampling_frequency, actuators);
+        Self {
+            samples,
+            payload,
+            ..log
         }
     }
 
@@ -395,33 +396,38 @@ impl Log {
     /// # Errors
     /// As [`Log::reader`] and [`Reader::next`].
     pub fn beginning(&self, samples: usize) -> Result<Self, Error> {
-        let count = samples.min(self.samples);
-        let (mut positions, mut torques) = (Vec::new(), Vec::new());
-        let mut velocities = Vec::new();
-        let mut reader = self.reader()?;
-        while positions.len() < count * self.actuators
-            && let Some(block) = reader.next()?
-        {
-            positions.extend(block.positions);
-            torques.extend(block.torques);
-            velocities.extend(block.velocities);
-        }
-        positions.truncate(count * self.actuators);
-        torques.truncate(count * self.actuators);
-        velocities.truncate(count * self.actuators);
+        let own = self.first_samples(samples)?;
         let beginning = Self::new(
             self.name.as_str(),
             self.sampling_frequency,
             self.actuators,
-            positions,
-            torques,
+            own.positions,
+            own.torques,
             self.payload,
         )?;
-        let beginning = beginning.with_velocities(velocities);
+        let beginning = beginning.with_velocities(own.velocities);
         Ok(match self.payload_name() {
             Some(name) => beginning.with_payload_name(name),
             None => beginning,
         })
+    }
+
+    /// The first `count` samples, or all if there are fewer.
+    pub(crate) fn first_samples(&self, count: usize) -> Result<Samples, Error> {
+        let values = count.min(self.samples) * self.actuators;
+        let mut samples = Samples::default();
+        let mut reader = self.reader()?;
+        while samples.positions.len() < values
+            && let Some(block) = reader.next()?
+        {
+            samples.positions.extend(block.positions);
+            samples.torques.extend(block.torques);
+            samples.velocities.extend(block.velocities);
+        }
+        samples.positions.truncate(values);
+        samples.torques.truncate(values);
+        samples.velocities.truncate(values);
+        Ok(samples)
     }
 
     /// A reader of the run from its first sample.
@@ -470,12 +476,9 @@ impl Log {
     /// # Errors
     /// As [`Log::reader`] and [`Reader::next`].
     pub fn load(&self) -> Result<(Vec<f64>, Vec<f64>), Error> {
-        let (mut positions, mut torques) = (Vec::new(), Vec::new());
-        let mut reader = self.reader()?;
-        while let Some(block) = reader.next()? {
-            positions.extend(block.positions);
-            torques.extend(block.torques);
-        }
+        let Samples {
+            positions, torques, ..
+        } = self.first_samples(self.samples)?;
         Ok((positions, torques))
     }
 }
