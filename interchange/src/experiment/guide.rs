@@ -150,7 +150,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         Some(DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j]))
     }
 
-    /// Platform whose displacements an edge stands for.
+    /// Platform whose displacements an edge represents.
     fn platform(&self, edge: usize) -> Option<&Platform> {
         let platform = self.network.platform.as_ref();
         platform.filter(|_| self.network.edges[edge].origin == Origin::Platform)
