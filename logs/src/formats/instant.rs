@@ -1,4 +1,5 @@
-//! Dates and times of day as texts: `2026-03-01T10:00:00.001Z`, `01.03.2026 10:00:00`, `10:00:00.001`.
+//! Dates and times of day as texts: `2026-03-01T10:00:00.001Z`, `01.03.2026 10:00:00`,
+//! `3/1/2026 10:00:00.001 PM`, `01-Mar-2026 10:00:00`, `10:00:00.001`.
 //!
 //! Times of day count from midnight. Dates count from midnight (UTC) of the day on which the log
 //! starts, so that steps of microseconds keep their digits. A time without a zone is taken as it is.
@@ -31,8 +32,9 @@ impl Instant {
         if !is_digit(cell.as_bytes().first()) || cell.matches(':').count() < 2 {
             return None;
         }
-        let cell = cell.replace(',', ".");
-        let Some((date, time)) = cell.split_once(['T', 't', ' ']) else {
+        let cell = of_24_hours(&cell.replace(',', "."))?;
+        let parts = cell.split_once(' ');
+        let Some((date, time)) = parts.or_else(|| cell.split_once(['T', 't'])) else {
             let time: Time = cell.parse().ok()?;
             return Some(Self::of(None, time));
         };
@@ -68,20 +70,57 @@ impl Instant {
     }
 }
 
-/// A date as `YYYY-MM-DD`; `None` if day and month may be exchanged.
+/// A cell whose time of day has 24 hours; `None` for an hour that `AM` or `PM` does not allow.
+fn of_24_hours(cell: &str) -> Option<String> {
+    let lower = cell.to_ascii_lowercase();
+    let suffixes = [("am", 0), ("a.m.", 0), ("pm", 12), ("p.m.", 12)];
+    let found = suffixes
+        .iter()
+        .find_map(|(suffix, more)| Some((lower.strip_suffix(suffix)?, more)));
+    let Some((rest, more)) = found else {
+        return Some(cell.to_owned());
+    };
+    let rest = rest.trim_end();
+    let start = rest.rfind([' ', 't']).map_or(0, |place| place + 1);
+    let (date, time) = rest.split_at(start);
+    let (hour, minutes) = time.split_once(':')?;
+    let hour: u32 = hour.parse().ok().filter(|hour| (1..=12).contains(hour))?;
+    Some(format!("{date}{:02}:{minutes}", hour % 12 + more))
+}
+
+const MONTHS: [&str; 12] = [
+    "jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec",
+];
+
+/// A date as `YYYY-MM-DD`.
+///
+/// Dates with points or hyphens start with the day, those with slashes with the month, unless a
+/// number above 12 excludes that. If that is wrong, a log over midnight has a gap, which is reported.
 fn iso_date(date: &str) -> Option<String> {
     let parts: Vec<&str> = date.split(['-', '/', '.']).collect();
     let [first, second, third] = parts[..] else {
         return None;
     };
-    let pad = |part: &str| format!("{part:0>2}");
-    if first.len() == 4 {
-        Some(format!("{first}-{}-{}", pad(second), pad(third)))
-    } else if third.len() == 4 && date.contains('.') {
-        Some(format!("{third}-{}-{}", pad(second), pad(first)))
+    let number = |part: &str| {
+        let lower = part.to_ascii_lowercase();
+        let month = MONTHS.iter().position(|name| *name == lower);
+        month.map(|month| month + 1).or_else(|| part.parse().ok())
+    };
+    let (year, month, day) = if first.len() == 4 {
+        (first, number(second)?, number(third)?)
+    } else if third.len() == 4 {
+        let (first, second) = (number(first)?, number(second)?);
+        let is_month_first = second > 12 || date.contains('/') && first <= 12;
+        let (month, day) = if is_month_first {
+            (first, second)
+        } else {
+            (second, first)
+        };
+        (third, month, day)
     } else {
-        None
-    }
+        return None;
+    };
+    Some(format!("{year}-{month:02}-{day:02}"))
 }
 
 /// Times of day of one column, continued over midnight.
@@ -119,11 +158,25 @@ mod tests {
             "2026/3/1 10:00:00.5",
             "01.03.2026 10:00:00.5",
             "2026-03-01T12:00:00.5+02:00",
+            "3/1/2026 10:00:00.5 AM",
+            "03/01/2026 10:00:00.5",
+            "1-3-2026 10:00:00.5",
+            "01-Mar-2026 10:00:00.5",
         ] {
             assert_eq!(since(cell, 20_513), Some(36_000.5), "{cell}");
         }
         assert_eq!(since("2026-03-02T00:00:01Z", 20_513), Some(86_401.0));
         assert_eq!(since("10:00:00.25", 20_513), Some(36_000.25));
+        assert_eq!(since("10:00:00.25 pm", 20_513), Some(79_200.25));
+        assert_eq!(since("12:00:01 a.m.", 20_513), Some(1.0));
+        // A number above 12 is the day, wherever it is.
+        for cell in [
+            "28/11/2026 00:00:01",
+            "11/28/2026 00:00:01",
+            "28-Nov-2026 12:00:01 AM",
+        ] {
+            assert_eq!(since(cell, 20_785), Some(1.0), "{cell}");
+        }
     }
 
     #[test]
@@ -133,7 +186,10 @@ mod tests {
             "1.5",
             "q1",
             "10:00",
-            "03/04/2026 10:00:00",
+            "13/13/2026 10:00:00",
+            "3/4/26 10:00:00",
+            "13:00:00 PM",
+            "0:00:00 AM",
             "25:00:00",
             "1:2:3:4",
             "a:b:c",

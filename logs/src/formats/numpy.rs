@@ -7,7 +7,7 @@
 use crate::{
     bytes::{budget::Budget, byte_source::ByteSource},
     error::{Error, Problem},
-    formats::{archive, arrays::Arrays},
+    formats::{archive, arrays::Arrays, table_file::TableFile},
     problems::{shown, unreadable},
 };
 use overact::Code;

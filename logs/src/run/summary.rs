@@ -3,7 +3,6 @@
 use crate::{
     bytes::temporary_store::TemporaryStore,
     error::{Error, Problem},
-    formats::table::Table,
     mapping::Time,
     problems::{Collected, LARGEST_NUMBER_OF_PROBLEMS},
     resampling::Irregularities,
