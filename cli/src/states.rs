@@ -86,11 +86,7 @@ impl States {
                 format,
                 states,
             }),
-            Err(problem) => Err(Problem {
-                file: Some(file),
-                ..problem
-            }
-            .into()),
+            Err(problem) => Err(problem.file(file).into()),
         }
     }
 

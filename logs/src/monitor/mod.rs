@@ -1,8 +1,9 @@
 //! Statistics and plausibility of a run's raw numbers, collected while it is read.
 //!
-//! - `run_monitor`: stuck encoders, lost samples, standstill;
+//! - `run_monitor`: stuck encoders, standstill, torques at an extreme;
+//! - `lost_samples`: lost samples and repeated rows;
 //! - `position`: statistics of an actuator's positions;
-//! - `marks`: hashes of samples, to find repeated ones;
+//! - `marks`: hashes of samples, to find those of another run;
 //! - `peaks`: torques with flat peaks;
 //! - `clipping`: their description;
 //! - `roughness`: noise of signals, and equal signals;
@@ -11,6 +12,7 @@
 //! - `statistics`: statistics of a stream of numbers.
 
 mod clipping;
+mod lost_samples;
 mod marks;
 mod peaks;
 mod position;

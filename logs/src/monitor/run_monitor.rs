@@ -4,6 +4,7 @@
 
 use super::{
     clipping::clipping,
+    lost_samples::{RepeatedRows, Steps},
     marks::{CommonSamples, Marks},
     peaks,
     position::{Position, Rest, SPEED_SAMPLES},
@@ -19,15 +20,6 @@ const REST_SECONDS: f64 = 0.1;
 
 /// Fraction of an actuator's range, or speed, that is certainly motion.
 const CLEAR_MOTION: f64 = 0.05;
-
-/// Smallest change of a step at lost samples, by the usual largest step.
-const LOST_STEP: f64 = 0.5;
-
-/// Smallest ratio of it to the encoder's resolution and to usual changes of steps.
-const LOST_RATIO: f64 = 4.0;
-
-/// Fraction of steps that are usual, even if samples are lost.
-const USUAL: f64 = 0.9;
 
 /// Fraction of steps that are no jumps.
 const OF_STEPS: f64 = 0.99;
@@ -59,8 +51,9 @@ pub struct Monitor {
     roughness: [Roughness; 2],
     /// Last [`SPEED_SAMPLES`] + 1 rows of positions, the newest last.
     recent: Vec<f64>,
-    /// Hashes of samples, to find repeated ones.
+    /// Hashes of samples, to find those of another run.
     marks: Marks,
+    repeated: RepeatedRows,
     /// Whether the run was resampled from irregular times, which may be late.
     is_resampled: bool,
 }
@@ -79,6 +72,7 @@ impl Monitor {
             roughness: [Roughness::new(actuators), Roughness::new(actuators)],
             recent: Vec::new(),
             marks: Marks::default(),
+            repeated: RepeatedRows::default(),
             is_resampled: false,
         }
     }
@@ -115,6 +109,7 @@ impl Monitor {
         let torques = || samples.torques.chunks_exact(n);
         for (positions, torques) in rows().zip(torques()) {
             self.marks.take(positions, torques);
+            self.repeated.take(positions, torques);
         }
         torques().for_each(|torques| self.means.take(torques));
         self.roughness[0].take(&samples.positions);
@@ -371,7 +366,13 @@ impl Monitor {
             }));
         }
         if stuck.iter().all(Option::is_none) {
-            suspicions.extend(self.lost(names));
+            let steps = Steps {
+                positions: &self.positions,
+                repeated: &self.repeated,
+                frequency: self.frequency,
+                is_resampled: self.is_resampled,
+            };
+            suspicions.extend(steps.suspicion(names));
         }
         suspicions
     }
@@ -430,56 +431,6 @@ impl Monitor {
                 }
             );
             (seconds, message)
-        })
-    }
-
-    /// Steps that are too large, in any actuator.
-    fn lost(&self, names: &[&str]) -> Option<Suspicion> {
-        let mut samples: Vec<usize> = Vec::new();
-        let mut largest = 0.0_f64;
-        let mut actuators: Vec<&str> = Vec::new();
-        for (one, name) in self.positions.iter().zip(names) {
-            let Some(resolution) = one.smallest else {
-                continue;
-            };
-            let usual = one.sizes.quantile(USUAL);
-            let least = (LOST_STEP * usual)
-                .max(LOST_RATIO * resolution)
-                .max(LOST_RATIO * one.changes.quantile(USUAL));
-            let jumps = one.jumps.iter().filter(|(size, _)| *size > least);
-            largest = jumps
-                .clone()
-                .fold(largest, |most, (size, _)| most.max(size / least));
-            let before = samples.len();
-            samples.extend(jumps.map(|(_, sample)| *sample));
-            if samples.len() > before {
-                actuators.push(name);
-            }
-        }
-        let first = *samples.iter().min()?;
-        let seconds = first as f64 / self.frequency;
-        Some(Suspicion {
-            fault: if self.is_resampled {
-                DataFault::Late
-            } else {
-                DataFault::Dropped
-            },
-            statistic: largest,
-            unit: "times the largest usual change of a step",
-            threshold: 1.0,
-            actuator: match actuators[..] {
-                [one] if names.len() > 1 => Some(one.to_owned()),
-                _ => None,
-            },
-            message: if self.is_resampled {
-                format!(
-                    "positions jump between samples, first at t = {seconds:.4} s: some times are late or early by a large part of a step, which acts as noise of the positions; log the times of the measurement, not those of the program that reads it"
-                )
-            } else {
-                format!(
-                    "positions jump between samples, first at t = {seconds:.4} s (sample {first}): samples are lost or repeated; record the run again, or cut it there"
-                )
-            },
         })
     }
 

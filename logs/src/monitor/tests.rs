@@ -171,3 +171,29 @@ fn torques_that_are_held_between_samples_are_not_frozen() {
         "{found:?}"
     );
 }
+
+/// Suspicions about a run of two actuators whose row `repeats` is that before it.
+fn with_repeated_rows(repeats: fn(usize) -> bool) -> Vec<Suspicion> {
+    let mut samples = Samples::default();
+    for sample in 0..3000 {
+        let sample = if repeats(sample) { sample - 1 } else { sample };
+        let time = sample as f64 / FREQUENCY;
+        let positions = [(2.0 * time).sin(), (3.0 * time).cos()];
+        samples.positions.extend(positions);
+        samples.torques.extend([swing(time), swing(time + 0.1)]);
+    }
+    let mut monitor = Monitor::new(2, FREQUENCY);
+    monitor.take(&samples);
+    monitor.suspicions(&["left", "right"], true)
+}
+
+#[test]
+fn repeated_rows_are_counted_and_resampling_is_suggested() {
+    let found = with_repeated_rows(|sample| sample % 100 == 50);
+    let lost = found.iter().find(|one| one.fault == DataFault::Dropped);
+    let message = &lost.expect("a suspicion").message;
+    let expected = "30 samples repeat all numbers of the one before";
+    assert!(message.contains(expected), "{message}");
+    assert!(message.contains("`resample = \"500 Hz\"`"), "{message}");
+    assert_eq!(with_repeated_rows(|_| false), []);
+}
