@@ -48,7 +48,14 @@ impl Fault {
         faults
     }
 
-    /// All faults, including units. Each is tested on a few rows only.
+    /// Units of single drives.
+    pub(crate) fn single_units(model: &dyn Model) -> Vec<Self> {
+        let all = Self::with_units(model).into_iter();
+        all.filter(|fault| matches!(fault, Self::Unit(_, Some(_))))
+            .collect()
+    }
+
+    /// All faults, including units.
     fn with_units(model: &dyn Model) -> Vec<Self> {
         let info = model.info();
         let mut faults = Self::all(model);

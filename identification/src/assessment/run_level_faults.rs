@@ -22,6 +22,11 @@ const EXPLAINED_BY_GRAVITY: f64 = 0.75;
 /// residual small in any case.
 const EXPLAINED_BEHIND_LOOPS: f64 = 0.1;
 
+/// Largest fraction of the error that may remain with one drive in another unit.
+///
+/// Another unit also scales the drive's motion, which may explain a part of any error.
+const EXPLAINED_BY_UNIT: f64 = 0.1;
+
 /// Possible faults of positions in all runs, or of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum RunLevelFault {
@@ -39,7 +44,9 @@ impl RunLevelFault {
     /// All such faults of a robot.
     pub(super) fn all(model: &dyn Model) -> Vec<Self> {
         let n = model.info().sizes.actuators;
+        let units = positions::Fault::single_units(model);
         let mut all: Vec<Self> = { positions::Fault::all(model).into_iter() }
+            .chain(units)
             .map(Self::Positions)
             .collect();
         all.extend((0..n).flat_map(|i| (i + 1..n).map(move |j| Self::Exchanged(i, j))));
@@ -51,6 +58,7 @@ impl RunLevelFault {
     pub(super) fn explained(self, model: &dyn Model, of_one: f64) -> f64 {
         match self {
             Self::Exchanged(..) if couples(model) => EXPLAINED_BEHIND_LOOPS,
+            Self::Positions(positions::Fault::Unit(..)) => EXPLAINED_BY_UNIT,
             // In a symmetric robot, swapping actuators changes little. Another fault may then
             // become slightly smaller.
             Self::Positions(_) | Self::Exchanged(..) => of_one,

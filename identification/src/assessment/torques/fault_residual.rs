@@ -156,19 +156,41 @@ impl FaultResidual<'_> {
         all.smallest_residual(&selected) / f64::from(lines.max(1)).sqrt()
     }
 
-    /// Payload mass after correcting a fault; `None` if there is none or it is undetermined.
-    pub(super) fn mass(&self, fault: Fault) -> Option<f64> {
+    /// Symbol of a base column.
+    fn symbol(&self, place: usize) -> Option<StandardParameter> {
         let Columns { columns, base, .. } = self.columns;
-        let is_mass = |place: &&usize| {
-            let column = columns.as_slice().get(base.columns[**place]);
-            column.is_some_and(|column| column.symbol == StandardParameter::M)
-        };
-        let place = *self.columns.payload.iter().find(is_mass)?;
-        let selected: Vec<usize> = (0..base.columns.len()).collect();
+        let column = columns.as_slice().get(*base.columns.get(place)?)?;
+        Some(column.symbol)
+    }
+
+    /// Base parameters after correcting a fault, and the triangle of their equations.
+    fn solved(&self, fault: Fault) -> Option<(DVector<f64>, DMatrix<f64>)> {
+        let selected: Vec<usize> = (0..self.columns.base.columns.len()).collect();
         let ReducedFactor { triangle, rhs, .. } =
             self.stacked(Some(fault), Some(fault)).0.reduced(&selected);
-        let solved = triangle.solve_upper_triangular(&rhs)?;
+        Some((triangle.solve_upper_triangular(&rhs)?, triangle))
+    }
+
+    /// Payload mass after correcting a fault; `None` if there is none or it is undetermined.
+    pub(super) fn mass(&self, fault: Fault) -> Option<f64> {
+        let is_mass = |place: &&usize| self.symbol(**place) == Some(StandardParameter::M);
+        let place = *self.columns.payload.iter().find(is_mass)?;
+        let (solved, _) = self.solved(fault)?;
         solved.get(place).copied().filter(|mass| mass.is_finite())
+    }
+
+    /// Whether friction opposes the motion after correcting a fault, as far as the data show.
+    pub(super) fn has_positive_friction(&self, fault: Fault) -> bool {
+        let Some((solved, triangle)) = self.solved(fault) else {
+            return false;
+        };
+        let of_column = |(place, value): (usize, &f64)| {
+            let symbol = self.symbol(place)?;
+            let is_known = symbol.is_friction() && symbol.is_nonnegative();
+            is_known.then(|| value * triangle.column(place).norm())
+        };
+        let friction: f64 = solved.iter().enumerate().filter_map(of_column).sum();
+        friction > 0.0
     }
 
     /// Factor of all lines after correcting a fault, each divided by its norm after correcting

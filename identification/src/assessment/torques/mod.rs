@@ -188,7 +188,22 @@ fn of_one(
             heavy.filter(|other| fault_residual.mass(*other).is_some_and(|mass| mass > 0.0));
         fault = heavy.next().unwrap_or(fault);
     }
-    let fault_check = fault_check(model, runs, fault, &so(before, after));
+    // Two drives differ by a factor or a sign, which may be a fault of either.
+    let as_good = errors.iter().filter(|(other, error)| {
+        let is_alike = match (fault, other) {
+            (Fault::Gain(_, own), Fault::Gain(_, gain)) => (own < 0.0) == (*gain < 0.0),
+            _ => false,
+        };
+        *other != fault && is_alike && *error <= AS_GOOD * after
+    });
+    let mut others: Vec<Fault> = as_good.map(|(other, _)| *other).collect();
+    if matches!(fault, Fault::Gain(_, gain) if gain < 0.0) {
+        // Friction against the motion tells which of two signs is wrong.
+        let mut signs = [fault].into_iter().chain(others.drain(..));
+        let is_passive = |one: &Fault| fault_residual.has_positive_friction(*one);
+        fault = signs.find(is_passive).unwrap_or(fault);
+    }
+    let fault_check = fault_check(model, runs, fault, &others, &so(before, after));
     Some(measured(fault_check, before, after, EXPLAINED))
 }
 
@@ -234,10 +249,14 @@ fn measured(mut check: Check, before: f64, after: f64, part: f64) -> Check {
         .against(100.0 * part * before, origin)
 }
 
-/// The failed check of a fault; `so` is the evidence.
-fn fault_check(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Check {
+/// The failed check of a fault, with faults that explain the data as well; `so` is the evidence.
+fn fault_check(model: &dyn Model, runs: &[Log], fault: Fault, others: &[Fault], so: &str) -> Check {
     let info = model.info();
     let name = |index: usize| info.actuators.get(index).copied().unwrap_or_default();
+    let or = |other: &Fault| match other {
+        Fault::Gain(j, gain) => format!(", or that of `{}` {gain} times", name(*j)),
+        Fault::Swapped(..) | Fault::Label(_) => String::new(),
+    };
     let (kind, run, actuator, message) = match fault {
         Fault::Gain(i, gain) if gain < 0.0 => (
             CheckKind::WrongSign,
@@ -253,8 +272,9 @@ fn fault_check(model: &dyn Model, runs: &[Log], fault: Fault, so: &str) -> Check
             None,
             Some(i),
             format!(
-                "the torque of `{}` looks wrong by a factor, it should be about {gain} times as large: check its gain and unit",
-                name(i)
+                "the torque of `{}` looks wrong by a factor, it should be about {gain} times as large{}: check its gain and unit",
+                name(i),
+                others.iter().map(or).collect::<String>()
             ),
         ),
         Fault::Swapped(i, j) => (
