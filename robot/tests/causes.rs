@@ -136,3 +136,62 @@ fn two_dead_encoders_are_no_equal_columns() {
     assert!(reasons.contains("its encoder is dead"), "{reasons}");
     assert!(!reasons.contains("used twice"), "{reasons}");
 }
+
+/// Reasons of the verdict on a short run of the five-bar with other positions and torques.
+fn reasons_of_five_bar(change: impl Fn(usize, &mut f64, &mut f64)) -> String {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/five_bar.toml");
+    let text = std::fs::read_to_string(path).expect("the library");
+    let text = text.replacen("duration = \"10 s\"", "duration = \"3 s\"", 1);
+    let robot = Robot::from_text("five_bar.toml", &text).expect("a robot");
+    let runs = robot.experiment().expect("an experiment");
+    let runs = runs.runs(&[], &|_, _| {}).expect("runs").identified;
+    let changed = runs.into_iter().map(|run| {
+        let n = run.actuators();
+        let (mut positions, mut torques) = run.load().expect("numbers");
+        for (place, (position, torque)) in positions.iter_mut().zip(&mut torques).enumerate() {
+            change(place % n, position, torque);
+        }
+        let (name, frequency) = (run.name(), run.sampling_frequency());
+        Log::new(name, frequency, n, positions, torques, false).expect("a run")
+    });
+    let logs: Vec<Log> = changed.collect();
+    let result = Identifier::new(&robot).runs(&logs).run().expect("a result");
+    assert_eq!(result.grade(), Grade::DoNotUse);
+    result.verdicts[0].reasons.join("\n")
+}
+
+/// The residual is the same with the other drive reversed, but friction would then drive the joints.
+#[test]
+fn the_reversed_drive_of_two_is_named() {
+    for (drive, name) in ["left", "right"].into_iter().enumerate() {
+        let reasons = reasons_of_five_bar(|place, _, torque| {
+            if place == drive {
+                *torque = -*torque;
+            }
+        });
+        let expected = format!("the torque of `{name}` looks reversed");
+        assert!(reasons.contains(&expected), "{reasons}");
+    }
+}
+
+#[test]
+fn a_factor_between_two_drives_names_both() {
+    let reasons = reasons_of_five_bar(|place, _, torque| {
+        if place == 0 {
+            *torque *= 1e-3;
+        }
+    });
+    assert!(reasons.contains("`right`"), "{reasons}");
+    assert!(reasons.contains("`left` 1000 times"), "{reasons}");
+}
+
+#[test]
+fn one_drive_in_turns_is_named() {
+    let reasons = reasons_of_five_bar(|place, position, _| {
+        if place == 0 {
+            *position /= std::f64::consts::TAU;
+        }
+    });
+    assert!(reasons.contains("`left`"), "{reasons}");
+    assert!(reasons.contains("turns"), "{reasons}");
+}
