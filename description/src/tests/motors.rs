@@ -82,7 +82,7 @@ fn errors() {
         ),
         (
             "[[leg.arm.motor]]\nturns = \"q2\"\nparameters = \"inertia\"",
-            "17:14 a motor has no parameter `xx`; its parameters are \"ia\", \"fv\", \"fs\", \"off\" and those of \"friction by direction\"",
+            "17:14 a motor has no parameter `xx`; its parameters are \"ia\", \"fv\", \"fs\", \"off\", \"fq\" and those of \"friction by direction\"",
         ),
     ];
     for (keys, expected) in cases {

@@ -96,15 +96,18 @@ fn on_disk<'m>(file: &str, medium: &'m ByteSource) -> Result<&'m std::path::Path
     })
 }
 
-/// Formats of optional features: magic bytes, description, feature, and help without it.
-const OPTIONAL: [(&[u8], &str, &str, &str); 3] = [
+/// Formats of features that this build lacks: magic bytes, description, feature, and help.
+const OPTIONAL: &[(&[u8], &str, &str, &str)] = &[
+    #[cfg(not(feature = "hdf5"))]
     (
         b"MATLAB 7.3",
         "the file is of MATLAB's version 7.3, which is HDF5",
         "hdf5",
         "save it in MATLAB with `save(..., '-v7')`",
     ),
+    #[cfg(not(feature = "hdf5"))]
     (HDF5, "the file is HDF5", "hdf5", "export CSV"),
+    #[cfg(not(feature = "mcap"))]
     (
         MCAP,
         "the file is MCAP",
@@ -208,9 +211,6 @@ fn of(beginning: &[u8]) -> Result<&'static Format, Problem> {
     if let Some((_, what, help)) = refused.find(|(magic, ..)| beginning.starts_with(magic)) {
         return Err(Problem::new(Code::LOG_FORMAT, *what).help(*help));
     }
-    if let Some(format) = FORMATS.iter().find(|format| (format.is)(beginning)) {
-        return Ok(format);
-    }
     let mut optional = OPTIONAL.iter();
     if let Some((_, what, feature, help)) =
         optional.find(|(magic, ..)| beginning.starts_with(magic))
@@ -219,6 +219,9 @@ fn of(beginning: &[u8]) -> Result<&'static Format, Problem> {
         return Err(Problem::new(Code::LOG_FORMAT, message).help(format!(
             "build it with the feature `{feature}`: `cargo run --release --features {feature} -- …`; or {help}"
         )));
+    }
+    if let Some(format) = FORMATS.iter().find(|format| (format.is)(beginning)) {
+        return Ok(format);
     }
     if is_matlab_4(beginning) {
         let message = "the file is of MATLAB's version 4, which is not supported";

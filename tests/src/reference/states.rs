@@ -113,6 +113,7 @@ pub fn random_parameters(mechanism: &Mechanism, seed: u64) -> DVector<f64> {
         all.extend([friction(), friction(), friction(), friction()]);
         all.push(joint.stribeck.map_or(0.0, |_| friction()));
         all.push(joint.load.as_ref().map_or(0.0, |_| friction()));
+        all.push(friction());
     }
     if mechanism.motion.has_platform() {
         all.extend(random_body(&mut generator));
@@ -132,6 +133,7 @@ pub fn random_parameters(mechanism: &Mechanism, seed: u64) -> DVector<f64> {
         ]);
         all.extend([(); 4].map(|()| within(0.1, 1.0)));
         all.extend([motor.stribeck.map_or(0.0, |_| within(0.1, 1.0)), 0.0]);
+        all.push(within(0.1, 1.0));
     }
     DVector::from_vec(all)
 }

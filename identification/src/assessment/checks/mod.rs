@@ -19,7 +19,7 @@ use overact::Model;
 pub(super) use fault_hypotheses::HARMFUL;
 
 use super::{
-    check::Check,
+    check::{About, Check, CheckKind},
     hypotheses::{Pace, Scores},
 };
 use crate::{
@@ -144,6 +144,19 @@ const CHECKS: [Function; 24] = [
     residuals::held_out::check,
 ];
 
+/// Removes units that follow from the torques if the range of a signal has already named that of
+/// the same drive.
+fn keep_first_units(checks: &mut Vec<Check>) {
+    let is_unit = |check: &Check| check.kind == CheckKind::Unit && !check.passed;
+    let of_ranges = checks
+        .iter()
+        .filter(|one| is_unit(one) && one.about == About::Data);
+    let named: Vec<Option<String>> = of_ranges.map(|one| one.actuator.clone()).collect();
+    checks.retain(|one| {
+        !(is_unit(one) && one.about == About::Model && named.contains(&one.actuator))
+    });
+}
+
 /// Runs all checks.
 ///
 /// # Errors
@@ -154,6 +167,7 @@ pub(crate) fn checks(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         all.extend(check(context)?);
     }
     all.extend(residuals::relative_error::silent(context, &all));
+    keep_first_units(&mut all);
     admissible_faults::spoil(context, &mut all);
     for check in &mut all {
         check.words = with_joints(&check.words);
