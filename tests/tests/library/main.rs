@@ -18,3 +18,4 @@ mod power;
 mod range;
 mod ranks;
 mod singularities;
+mod transmissions;
