@@ -33,9 +33,15 @@ trait Numbers {
     fn numbers(&self) -> Vec<f64>;
 }
 
-impl<T: Float> Numbers for T {
+impl Numbers for f64 {
     fn numbers(&self) -> Vec<f64> {
-        vec![(*self).into()]
+        vec![*self]
+    }
+}
+
+impl Numbers for f32 {
+    fn numbers(&self) -> Vec<f64> {
+        vec![f64::from(*self)]
     }
 }
 
@@ -67,7 +73,7 @@ impl Script {
     }
 
     /// All functions at a random transmission; `defect` is one of its inputs.
-    fn transmission<const N: usize, const R: usize, T: Float>(&mut self, random: &mut Random, defect: usize) {
+    fn transmission<const N: usize, const R: usize, T: Float + Numbers>(&mut self, random: &mut Random, defect: usize) {
         let mut draw = |scale: f64| T::of(scale * random.normal());
         let mut jacobian: [[T; R]; N] = std::array::from_fn(|_| std::array::from_fn(|_| draw(1.0)));
         let joints: [T; R] = std::array::from_fn(|_| draw(1.0));
@@ -132,7 +138,7 @@ impl Script {
         self.expect("torque_intervals", own.torque_intervals(&limits));
         self.expect("speed_factor", own.speed_factor(&joints, &limits).map(|x| [x]));
         self.expect("torque_factor", own.torque_factor(&joints, &limits).map(|x| [x]));
-        let found = curvature(|twist: &[T; R]| {
+        let found: Result<Curvature<N, R, T>, Error> = curvature(|twist: &[T; R]| {
             Ok(std::array::from_fn(|a| {
                 let mut sum = T::ZERO;
                 for i in 0..R {
@@ -185,7 +191,7 @@ fn driver(folder: &Path, is_single: bool) -> Option<PathBuf> {
     Some(program)
 }
 
-fn check<T: Float>(tolerance: f64) {
+fn check<T: Float + Numbers>(tolerance: f64) {
     let is_single = size_of::<T>() == 4;
     let mut script = Script::default();
     let mut random = Random(31);
