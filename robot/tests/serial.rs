@@ -81,9 +81,9 @@ impl<'a> Dynamics<'a> {
             pairs.map(|(whole, known)| whole - known).collect::<Vec<f64>>()
         };
         let gravity = bias(&vec![0.0; r]);
-        let velocity: Vec<f64> = { bias(&twist).iter().zip(&gravity) }
-            .map(|(both, gravity)| both - gravity)
-            .collect();
+        let both = bias(&twist);
+        let pairs = both.iter().zip(&gravity);
+        let velocity: Vec<f64> = pairs.map(|(both, gravity)| both - gravity).collect();
         let entries = (0..r).flat_map(|i| (0..r).map(move |j| (i, j)));
         let mass = entries.map(|(i, j)| mass[self.order[i] * r + self.order[j]]);
         let vector = |of: &[f64]| self.order.iter().map(|&at| of[at]).collect();

@@ -49,6 +49,11 @@
 #[doc = include_str!("../../docs/online.md")]
 mod online_page {}
 
+/// Compiles the program of the page on transmissions.
+#[cfg(all(doctest, feature = "macro"))]
+#[doc = include_str!("../../docs/transmissions.md")]
+mod transmissions_page {}
+
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!(
     "overact needs square roots and trigonometry: enable the feature `std`, or `libm` where there is no standard library"
