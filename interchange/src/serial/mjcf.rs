@@ -16,7 +16,10 @@ pub(super) fn text(tree: &SerialTree) -> String {
     let roots = (0..tree.bodies.len()).filter(|&at| tree.bodies[at].parent.is_none());
     roots.for_each(|root| body(tree, root, 2, &mut out));
     out += "  </worldbody>\n";
-    let followers = tree.bodies.iter().filter_map(|own| Some((own, own.follows?)));
+    let followers = tree
+        .bodies
+        .iter()
+        .filter_map(|own| Some((own, own.follows?)));
     let followers: Vec<String> = followers
         .map(|(own, (leader, factor))| {
             format!(

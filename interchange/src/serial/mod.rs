@@ -123,8 +123,7 @@ mod tests {
 
     #[test]
     fn a_point_mass_has_no_inertia_about_itself() {
-        let (mass, centre, inertia) =
-            centred(&[2.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 2.0, 2.0]);
+        let (mass, centre, inertia) = centred(&[2.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 2.0, 2.0]);
         assert_eq!((mass, centre.z), (2.0, 1.0));
         assert!(inertia.norm() < 1e-15);
     }

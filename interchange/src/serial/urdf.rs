@@ -48,12 +48,18 @@ pub(super) fn text(tree: &SerialTree) -> String {
     }
     for own in &tree.bodies {
         let name = escaped(&own.name);
-        let parent = own.parent.map_or(base.clone(), |at| escaped(&tree.bodies[at].name));
+        let parent = own
+            .parent
+            .map_or(base.clone(), |at| escaped(&tree.bodies[at].name));
         let placement = match own.parent {
             Some(_) => own.placement,
             None => upright(&tree.gravity) * own.placement,
         };
-        let kind = if own.is_revolute { "revolute" } else { "prismatic" };
+        let kind = if own.is_revolute {
+            "revolute"
+        } else {
+            "prismatic"
+        };
         let _ = writeln!(
             out,
             "  <joint name=\"{name}\" type=\"{kind}\">\n    <parent link=\"{parent}\"/>\n    <child link=\"{name}\"/>\n    <origin xyz=\"{}\" rpy=\"{}\"/>\n    <axis xyz=\"0 0 1\"/>",
@@ -61,7 +67,10 @@ pub(super) fn text(tree: &SerialTree) -> String {
             numbers(&roll_pitch_yaw(&placement.rotation))
         );
         let [least, most] = own.range.map(number);
-        let _ = writeln!(out, "    <limit lower=\"{least}\" upper=\"{most}\" {NO_LIMIT}/>");
+        let _ = writeln!(
+            out,
+            "    <limit lower=\"{least}\" upper=\"{most}\" {NO_LIMIT}/>"
+        );
         if let Some((leader, factor)) = own.follows {
             let _ = writeln!(
                 out,
@@ -81,7 +90,8 @@ fn upright(gravity: &Vector3<f64>) -> Isometry3<f64> {
     let turn = UnitQuaternion::rotation_between(gravity, &down);
     // Gravity may point along +z, or be zero.
     let turn = turn.unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI));
-    let turn = if gravity.norm() == 0.0 || (gravity.x == 0.0 && gravity.y == 0.0 && gravity.z < 0.0) {
+    let turn = if gravity.norm() == 0.0 || (gravity.x == 0.0 && gravity.y == 0.0 && gravity.z < 0.0)
+    {
         UnitQuaternion::identity()
     } else {
         turn
@@ -112,7 +122,12 @@ mod tests {
     #[test]
     fn angles_give_the_rotation_again() {
         let quarter = std::f64::consts::FRAC_PI_2;
-        for angles in [[0.3, -1.2, 2.0], [0.4, quarter, 0.9], [-1.0, -quarter, 0.2], [quarter, 0.0, -quarter]] {
+        for angles in [
+            [0.3, -1.2, 2.0],
+            [0.4, quarter, 0.9],
+            [-1.0, -quarter, 0.2],
+            [quarter, 0.0, -quarter],
+        ] {
             let [x, y, z] = angles;
             let turn = UnitQuaternion::from(Rotation3::from_euler_angles(x, y, z));
             let [x, y, z] = roll_pitch_yaw(&turn);
@@ -123,7 +138,12 @@ mod tests {
 
     #[test]
     fn gravity_points_down() {
-        for gravity in [[0.0, 0.0, -9.81], [0.0, 0.0, 9.81], [3.0, -1.0, 2.0], [0.0, 9.81, 0.0]] {
+        for gravity in [
+            [0.0, 0.0, -9.81],
+            [0.0, 0.0, 9.81],
+            [3.0, -1.0, 2.0],
+            [0.0, 9.81, 0.0],
+        ] {
             let gravity = Vector3::from(gravity);
             let turned = upright(&gravity) * gravity;
             assert!((turned + Vector3::z() * gravity.norm()).norm() < 1e-14);

@@ -5,6 +5,7 @@
 //! L Lᵀ plus a small multiple of the unit matrix (Rucker, Wensing 2022). The unknowns are the
 //! entries of L, found by the method of Levenberg and Marquardt.
 
+use super::pseudo_inertia::{parameters, pseudo_inertia};
 use super::states::State;
 use super::tree::{INERTIAL, Tree};
 use nalgebra::{DMatrix, DVector, Matrix4, SymmetricEigen, Vector3};
@@ -39,7 +40,13 @@ impl Scales {
     pub(super) fn new(states: &[State]) -> Self {
         let count = states.len().max(1) as f64;
         let r = states.first().map_or(0, |state| state.twist.len());
-        let mean = |at: usize| states.iter().map(|state| state.inertia[(at, at)]).sum::<f64>() / count;
+        let mean = |at: usize| {
+            states
+                .iter()
+                .map(|state| state.inertia[(at, at)])
+                .sum::<f64>()
+                / count
+        };
         let roots = (0..r).map(|at| mean(at).max(f64::MIN_POSITIVE).sqrt());
         let mut scales = Self {
             coordinates: roots.collect(),
@@ -94,7 +101,12 @@ impl Lumping<'_> {
         let scales = Scales::new(self.states);
         let units = self.units(&scales);
         let (factor, right) = self.factor(&scales, &units);
-        let own: Vec<f64> = self.own.iter().zip(&units).map(|(own, unit)| own / unit).collect();
+        let own: Vec<f64> = self
+            .own
+            .iter()
+            .zip(&units)
+            .map(|(own, unit)| own / unit)
+            .collect();
         let residual = |all: &[f64]| (&factor * DVector::from_column_slice(all) - &right).norm();
         let raised = |floor: f64| -> Vec<f64> {
             let bodies = own.chunks(INERTIAL);
@@ -106,7 +118,11 @@ impl Lumping<'_> {
         } else {
             search(&factor, &right, &raised(START_FLOOR))
         };
-        found.iter().zip(&units).map(|(value, unit)| value * unit).collect()
+        found
+            .iter()
+            .zip(&units)
+            .map(|(value, unit)| value * unit)
+            .collect()
     }
 
     /// Units of the parameters: of a body as heavy and as long as the robot.
@@ -116,7 +132,11 @@ impl Lumping<'_> {
         for body in &self.tree.bodies {
             for (at, _) in &body.terms {
                 let inertia = scales.coordinates[*at].powi(2);
-                let own = if body.is_revolute { inertia / (length * length) } else { inertia };
+                let own = if body.is_revolute {
+                    inertia / (length * length)
+                } else {
+                    inertia
+                };
                 mass = mass.max(own);
             }
         }
@@ -170,49 +190,33 @@ impl Lumping<'_> {
         for axis in 0..r {
             let mut unit = still.clone();
             unit[axis] = 1.0;
-            let source = self.tree.columns(&state.pose, &still, &unit, &Vector3::zeros());
+            let source = self
+                .tree
+                .columns(&state.pose, &still, &unit, &Vector3::zeros());
             for line in 0..r {
-                let rotor = if line == axis { self.armature[axis] } else { 0.0 };
+                let rotor = if line == axis {
+                    self.armature[axis]
+                } else {
+                    0.0
+                };
                 let weight = 1.0 / (d[line] * d[axis] * scales.inertia);
                 write(weight, &source, line, state.inertia[(line, axis)] - rotor);
             }
         }
-        let source = self.tree.columns(&state.pose, &still, &still, &self.gravity);
+        let source = self
+            .tree
+            .columns(&state.pose, &still, &still, &self.gravity);
         for line in 0..r {
             let is_felt = scales.gravity > f64::MIN_POSITIVE;
-            let weight = if is_felt { 1.0 / (d[line] * scales.gravity) } else { 0.0 };
+            let weight = if is_felt {
+                1.0 / (d[line] * scales.gravity)
+            } else {
+                0.0
+            };
             write(weight, &source, line, state.gravity[line]);
         }
         row
     }
-}
-
-/// Pseudo-inertia of ten parameters.
-fn pseudo_inertia(p: &[f64]) -> Matrix4<f64> {
-    let [xx, xy, xz, yy, yz, zz, mx, my, mz, m] = std::array::from_fn(|at| p[at]);
-    let half = 0.5 * (xx + yy + zz);
-    Matrix4::new(
-        half - xx, -xy, -xz, mx, //
-        -xy, half - yy, -yz, my, //
-        -xz, -yz, half - zz, mz, //
-        mx, my, mz, m,
-    )
-}
-
-/// Ten parameters of a pseudo-inertia.
-fn parameters(j: &Matrix4<f64>) -> [f64; INERTIAL] {
-    [
-        j[(1, 1)] + j[(2, 2)],
-        -j[(0, 1)],
-        -j[(0, 2)],
-        j[(0, 0)] + j[(2, 2)],
-        -j[(1, 2)],
-        j[(0, 0)] + j[(1, 1)],
-        j[(0, 3)],
-        j[(1, 3)],
-        j[(2, 3)],
-        j[(3, 3)],
-    ]
 }
 
 /// Parameters whose pseudo-inertia has no eigenvalue below a floor.
@@ -281,16 +285,15 @@ fn search(factor: &DMatrix<f64>, right: &DVector<f64>, start: &[f64]) -> Vec<f64
     let information = factor.tr_mul(factor)
         + DMatrix::identity(start.len(), start.len()) * REGULARISATION.powi(2);
     let cost = |all: &DVector<f64>| {
-        (factor * all - right).norm_squared()
-            + (REGULARISATION * (all - &anchor)).norm_squared()
+        (factor * all - right).norm_squared() + (REGULARISATION * (all - &anchor)).norm_squared()
     };
     let mut unknown = triangles(start);
     let (mut all, mut slopes) = bodies(&unknown);
     let (mut best, mut damping) = (cost(&all), 1e-3);
     let mut quiet = 0;
     for _ in 0..STEPS {
-        let gradient = factor.tr_mul(&(factor * &all - right))
-            + (&all - &anchor) * REGULARISATION.powi(2);
+        let gradient =
+            factor.tr_mul(&(factor * &all - right)) + (&all - &anchor) * REGULARISATION.powi(2);
         let gradient = slopes.tr_mul(&gradient);
         let normal = slopes.tr_mul(&(&information * &slopes));
         let largest = normal.diagonal().amax();
@@ -303,7 +306,11 @@ fn search(factor: &DMatrix<f64>, right: &DVector<f64>, start: &[f64]) -> Vec<f64
         let tried = moved.map(|moved| (cost(&bodies(&moved).0), moved));
         match tried.filter(|(found, _)| *found < best) {
             Some((found, moved)) => {
-                quiet = if best - found < DECREASE * best { quiet + 1 } else { 0 };
+                quiet = if best - found < DECREASE * best {
+                    quiet + 1
+                } else {
+                    0
+                };
                 (best, unknown) = (found, moved);
                 (all, slopes) = bodies(&unknown);
                 damping = (damping / 4.0).max(1e-12);

@@ -6,10 +6,12 @@
 //! those of the fit.
 //!
 //! - `tree`: the skeleton, and its dynamics as columns of inertial parameters;
+//! - `pseudo_inertia`: ten parameters as a matrix, and in another frame;
 //! - `states`: states of the workspace with the robot's dynamics;
 //! - `lumping`: the fit of physically consistent bodies.
 
 mod lumping;
+mod pseudo_inertia;
 mod states;
 mod tree;
 
@@ -21,12 +23,13 @@ use crate::{
     robot::Robot,
 };
 use lumping::{Lumping, Scales};
-use nalgebra::{DMatrix, DVector, Isometry3, Vector3};
+use nalgebra::{DMatrix, DVector, Vector3};
 use overact::{Columns, Function, Model};
 use overact_codegen::{
     Effort, Request, derivation::MotionInput, diagnostic::Code, mechanism::Mechanism,
 };
 use overact_interchange::{Format, SerialBody, SerialTree, write_serial};
+use pseudo_inertia::moved;
 use serde::Serialize;
 use states::{Plant, State};
 use std::collections::BTreeMap;
@@ -144,7 +147,9 @@ impl Robot {
         };
         let at_home = |error: overact::Error| -> Error {
             let message = format!("the robot has no dynamics at home: {error}");
-            Problem::new(Code::SINGULAR, message).file(self.file()).into()
+            Problem::new(Code::SINGULAR, message)
+                .file(self.file())
+                .into()
         };
         let mechanism = &self.model().model().mechanism;
         let tree = Tree::new(mechanism).map_err(refused)?;
@@ -165,7 +170,9 @@ impl Robot {
         }
         let next = settings.seed.wrapping_add(1);
         let fitted = plant.drawn(settings.fitted_states, next).map_err(refused)?;
-        let states = plant.drawn(settings.states, settings.seed).map_err(refused)?;
+        let states = plant
+            .drawn(settings.states, settings.seed)
+            .map_err(refused)?;
         let gravity = Vector3::from(mechanism.gravity.map(|number| number.value()));
         let own = own_inertia(mechanism, &tree, &value);
         let lumping = Lumping {
@@ -232,33 +239,6 @@ fn own_inertia(mechanism: &Mechanism, tree: &Tree, value: &dyn Fn(&str) -> f64) 
     all
 }
 
-/// Ten parameters in a frame in which their own frame has a placement.
-fn moved(inertia: &[f64; INERTIAL], place: &Isometry3<f64>) -> [f64; INERTIAL] {
-    use nalgebra::Matrix4;
-    let [xx, xy, xz, yy, yz, zz, mx, my, mz, m] = *inertia;
-    let half = 0.5 * (xx + yy + zz);
-    let pseudo = Matrix4::new(
-        half - xx, -xy, -xz, mx, //
-        -xy, half - yy, -yz, my, //
-        -xz, -yz, half - zz, mz, //
-        mx, my, mz, m,
-    );
-    let transform = place.to_homogeneous();
-    let j = transform * pseudo * transform.transpose();
-    [
-        j[(1, 1)] + j[(2, 2)],
-        -j[(0, 1)],
-        -j[(0, 2)],
-        j[(0, 0)] + j[(2, 2)],
-        -j[(1, 2)],
-        j[(0, 0)] + j[(1, 1)],
-        j[(0, 3)],
-        j[(1, 3)],
-        j[(2, 3)],
-        j[(3, 3)],
-    ]
-}
-
 /// Sentences on parts of the robot that the file does not have.
 fn notes(
     mechanism: &Mechanism,
@@ -272,7 +252,9 @@ fn notes(
         own.any(|one| one.symbol.name() == symbol && value(one.name) != 0.0)
     };
     let mut notes = Vec::new();
-    let friction = ["fv", "fs", "off", "fv_pos", "fv_neg", "fs_pos", "fs_neg", "fst", "fl"];
+    let friction = [
+        "fv", "fs", "off", "fv_pos", "fv_neg", "fs_pos", "fs_neg", "fst", "fl",
+    ];
     if friction.iter().any(|symbol| has(symbol)) {
         notes.push("friction and offsets are left out".to_owned());
     }
@@ -337,7 +319,9 @@ impl Errors<'_> {
         let r = state.twist.len();
         let (still, none) = (vec![0.0; r], Vector3::zeros());
         let torques = |velocity: &[f64], acceleration: &[f64], gravity: &Vector3<f64>| {
-            let columns = self.tree.columns(&state.pose, velocity, acceleration, gravity);
+            let columns = self
+                .tree
+                .columns(&state.pose, velocity, acceleration, gravity);
             columns * &self.bodies
         };
         let mut inertia = DMatrix::zeros(r, r);
@@ -393,7 +377,11 @@ fn written(
             is_revolute: body.is_revolute,
             follows: (first != at).then_some((first, factor)),
             range: [home - range.abs(), home + range.abs()],
-            armature: if first == at { armature[coordinate] } else { 0.0 },
+            armature: if first == at {
+                armature[coordinate]
+            } else {
+                0.0
+            },
             inertia: std::array::from_fn(|entry| bodies[INERTIAL * at + entry]),
         }
     });

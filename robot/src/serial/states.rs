@@ -97,10 +97,20 @@ impl<'a> Plant<'a> {
 
     /// Diagonal of the rotors' inertia matrix at home.
     pub(super) fn rotors_at_home(&self) -> Result<Vec<f64>, Error> {
-        let names = self.info.parameters.iter().chain(self.info.payload_parameters);
+        let names = self
+            .info
+            .parameters
+            .iter()
+            .chain(self.info.payload_parameters);
         let pairs = names.zip(&self.parameters);
         let rotors: Vec<f64> = pairs
-            .map(|(one, value)| if one.symbol.name() == "ia" { *value } else { 0.0 })
+            .map(|(one, value)| {
+                if one.symbol.name() == "ia" {
+                    *value
+                } else {
+                    0.0
+                }
+            })
             .collect();
         let r = self.info.sizes.dof;
         let inputs = [self.info.home_pose, &rotors];
@@ -204,7 +214,10 @@ impl<'a> Plant<'a> {
                     .map(|(own, range)| own + range * (2.0 * uniform(&mut random) - 1.0))
                     .collect()
             };
-            let (pose, twist) = (around(self.info.home_pose), around(&vec![0.0; self.ranges.len()]));
+            let (pose, twist) = (
+                around(self.info.home_pose),
+                around(&vec![0.0; self.ranges.len()]),
+            );
             match self.state(pose, twist) {
                 Ok(state) => states.all.push(state),
                 Err(error) => {

@@ -82,9 +82,8 @@ impl Tree {
                 body_of.push(parent);
                 continue;
             }
-            let carrier = parent.map_or_else(Isometry3::identity, |at: usize| {
-                at_zero[bodies[at].joint]
-            });
+            let carrier =
+                parent.map_or_else(Isometry3::identity, |at: usize| at_zero[bodies[at].joint]);
             let position = |joint: usize| independent.iter().position(|own| *own == joint);
             let terms = joint.variable.iter();
             let terms = terms.filter_map(|(of, factor)| Some((position(*of)?, factor.value())));
@@ -157,8 +156,7 @@ impl Tree {
             for (row, [linear, angular]) in own.partial.iter().enumerate() {
                 let (linear, angular) = (inverse * linear, inverse * angular);
                 for (column, [force, moment]) in wrenches.iter().enumerate() {
-                    all[(row, INERTIAL * index + column)] =
-                        linear.dot(force) + angular.dot(moment);
+                    all[(row, INERTIAL * index + column)] = linear.dot(force) + angular.dot(moment);
                 }
             }
             motions.push(own);
@@ -214,15 +212,15 @@ impl Motion {
             let mut inertia = Matrix3::zeros();
             inertia[(i, j)] = 1.0;
             inertia[(j, i)] = 1.0;
-            [
-                Vector3::zeros(),
-                inertia * e + w.cross(&(inertia * w)),
-            ]
+            [Vector3::zeros(), inertia * e + w.cross(&(inertia * w))]
         };
         let first = |i: usize| {
             let mut moment = Vector3::zeros();
             moment[i] = 1.0;
-            [e.cross(&moment) + w.cross(&w.cross(&moment)), moment.cross(&c)]
+            [
+                e.cross(&moment) + w.cross(&w.cross(&moment)),
+                moment.cross(&c),
+            ]
         };
         [
             second(0, 0),

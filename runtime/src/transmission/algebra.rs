@@ -30,7 +30,11 @@ pub(super) fn vector<T: Float, const K: usize>(numbers: [T; K]) -> Result<[T; K]
 pub(super) fn matrix<T: Float, const K: usize, const L: usize>(
     numbers: [[T; L]; K],
 ) -> Result<[[T; L]; K], Error> {
-    if numbers.as_flattened().iter().all(|number| number.is_finite()) {
+    if numbers
+        .as_flattened()
+        .iter()
+        .all(|number| number.is_finite())
+    {
         Ok(numbers)
     } else {
         Err(Error::Overflow)
@@ -101,9 +105,7 @@ pub(super) fn transformed<T: Float, const K: usize, const L: usize>(
 }
 
 /// Lengths of the columns, at least [`SMALLEST_SCALE`] of the longest; zero for a zero matrix.
-pub(super) fn scales<T: Float, const N: usize, const R: usize>(
-    jacobian: &[[T; R]; N],
-) -> [T; R] {
+pub(super) fn scales<T: Float, const N: usize, const R: usize>(jacobian: &[[T; R]; N]) -> [T; R] {
     let mut squares = [T::ZERO; R];
     for row in jacobian {
         for (sum, entry) in squares.iter_mut().zip(row) {

@@ -60,7 +60,11 @@ impl<X: Numbers, const K: usize> Numbers for [X; K] {
 impl Script {
     fn give(&mut self, numbers: &impl Numbers) {
         for x in numbers.numbers() {
-            let text = if x.is_nan() { "nan".to_owned() } else { format!("{x:e}") };
+            let text = if x.is_nan() {
+                "nan".to_owned()
+            } else {
+                format!("{x:e}")
+            };
             write!(self.input, " {text}").unwrap();
         }
     }
@@ -73,7 +77,11 @@ impl Script {
     }
 
     /// All functions at a random transmission; `defect` is one of its inputs.
-    fn transmission<const N: usize, const R: usize, T: Float + Numbers>(&mut self, random: &mut Random, defect: usize) {
+    fn transmission<const N: usize, const R: usize, T: Float + Numbers>(
+        &mut self,
+        random: &mut Random,
+        defect: usize,
+    ) {
         let mut draw = |scale: f64| T::of(scale * random.normal());
         let mut jacobian: [[T; R]; N] = std::array::from_fn(|_| std::array::from_fn(|_| draw(1.0)));
         let joints: [T; R] = std::array::from_fn(|_| draw(1.0));
@@ -123,21 +131,42 @@ impl Script {
         self.expect::<[T; 0]>("mode", own.in_mode_of(&home).map(|()| []));
         self.expect("motor_velocities", own.motor_velocities(&joints));
         self.expect("joint_velocities", own.joint_velocities(&motors));
-        self.expect("motor_accelerations", own.motor_accelerations(&joints, &motors));
-        let flat: Vec<T> = limits.iter().flat_map(|limit| [limit.least, limit.most]).collect();
+        self.expect(
+            "motor_accelerations",
+            own.motor_accelerations(&joints, &motors),
+        );
+        let flat: Vec<T> = limits
+            .iter()
+            .flat_map(|limit| [limit.least, limit.most])
+            .collect();
         let bias = std::array::from_fn(|a| flat[a]);
-        self.expect("joint_accelerations", own.joint_accelerations(&motors, &bias));
+        self.expect(
+            "joint_accelerations",
+            own.joint_accelerations(&motors, &bias),
+        );
         self.expect("joint_torques", own.joint_torques(&motors));
         self.expect("motor_torques", own.motor_torques(&joints));
         self.expect("reflected_inertia", own.reflected_inertia(&motors));
-        self.expect("joint_stiffness", own.joint_stiffness(&motors, &motors, &second));
+        self.expect(
+            "joint_stiffness",
+            own.joint_stiffness(&motors, &motors, &second),
+        );
         self.expect("motor_gains", own.motor_gains(&gains));
-        self.expect("motor_stiffness", own.motor_stiffness(&gains, &motors, &second));
+        self.expect(
+            "motor_stiffness",
+            own.motor_stiffness(&gains, &motors, &second),
+        );
         self.expect("diagonal_motor_gains", own.diagonal_motor_gains(&gains));
         self.expect("speed_intervals", own.speed_intervals(&limits));
         self.expect("torque_intervals", own.torque_intervals(&limits));
-        self.expect("speed_factor", own.speed_factor(&joints, &limits).map(|x| [x]));
-        self.expect("torque_factor", own.torque_factor(&joints, &limits).map(|x| [x]));
+        self.expect(
+            "speed_factor",
+            own.speed_factor(&joints, &limits).map(|x| [x]),
+        );
+        self.expect(
+            "torque_factor",
+            own.torque_factor(&joints, &limits).map(|x| [x]),
+        );
         let found: Result<Curvature<N, R, T>, Error> = curvature(|twist: &[T; R]| {
             Ok(std::array::from_fn(|a| {
                 let mut sum = T::ZERO;
@@ -155,7 +184,9 @@ impl Script {
 
 /// A number of `printf("%a")`.
 fn hexadecimal(text: &str) -> f64 {
-    let (sign, text) = text.strip_prefix('-').map_or((1.0, text), |rest| (-1.0, rest));
+    let (sign, text) = text
+        .strip_prefix('-')
+        .map_or((1.0, text), |rest| (-1.0, rest));
     let Some(text) = text.strip_prefix("0x") else {
         return sign * text.parse::<f64>().unwrap();
     };
@@ -172,7 +203,14 @@ fn driver(folder: &Path, is_single: bool) -> Option<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let program = folder.join("driver");
     let mut gcc = Command::new("gcc");
-    gcc.args(["-std=c99", "-O2", "-Wall", "-Wextra", "-Werror", "-pedantic"]);
+    gcc.args([
+        "-std=c99",
+        "-O2",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-pedantic",
+    ]);
     gcc.args(["-Wconversion", "-Wshadow", "-ffp-contract=off", "-I"]);
     gcc.arg(root.join("c"));
     if is_single {
@@ -202,10 +240,14 @@ fn check<T: Float + Numbers>(tolerance: f64) {
         script.transmission::<6, 6, T>(&mut random, defect);
         script.transmission::<8, 6, T>(&mut random, defect);
     }
-    let folder = std::env::temp_dir()
-        .join(format!("overact-transmission-{}-{is_single}", std::process::id()));
+    let folder = std::env::temp_dir().join(format!(
+        "overact-transmission-{}-{is_single}",
+        std::process::id()
+    ));
     std::fs::create_dir_all(&folder).unwrap();
-    let Some(program) = driver(&folder, is_single) else { return };
+    let Some(program) = driver(&folder, is_single) else {
+        return;
+    };
     let mut child = Command::new(program)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -229,7 +271,10 @@ fn check<T: Float + Numbers>(tolerance: f64) {
         for (found, expected) in found.iter().zip(expected) {
             compared += 1;
             different += usize::from(found != expected);
-            assert!((found - expected).abs() <= tolerance * scale, "{line}\n{expected}");
+            assert!(
+                (found - expected).abs() <= tolerance * scale,
+                "{line}\n{expected}"
+            );
         }
     }
     println!("{compared} numbers compared, {different} different");

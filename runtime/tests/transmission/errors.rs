@@ -10,13 +10,22 @@ fn a_singular_pose_is_refused_in_both_precisions() {
     };
     assert!(condition > 1e11, "{condition:e}");
     let single = [[1.0_f32, 2.0], [0.5, 1.0 + 1e-6]];
-    assert!(matches!(Transmission::new(&single), Err(Error::Singular { .. })));
+    assert!(matches!(
+        Transmission::new(&single),
+        Err(Error::Singular { .. })
+    ));
     assert!(Transmission::new(&[[1.0_f64, 2.0], [0.5, 1.0 + 1e-6]]).is_ok());
     // A joint that no motor moves, and fewer motors than joints.
     for jacobian in [[[1.0, 0.0], [2.0, 0.0]], [[0.0; 2]; 2]] {
-        assert!(matches!(Transmission::new(&jacobian), Err(Error::Singular { .. })));
+        assert!(matches!(
+            Transmission::new(&jacobian),
+            Err(Error::Singular { .. })
+        ));
     }
-    assert!(matches!(Transmission::new(&[[1.0, 0.5]]), Err(Error::Singular { .. })));
+    assert!(matches!(
+        Transmission::new(&[[1.0, 0.5]]),
+        Err(Error::Singular { .. })
+    ));
 }
 
 /// Metres and millimetres have the same condition number.
@@ -59,22 +68,45 @@ fn invalid_numbers_are_named() -> Result<(), Error> {
     assert_eq!(broken, Err(Error::NotFinite { input }));
     let own = Transmission::new(&[[1.0, 0.0], [0.0, 1.0]])?;
     let input = "motor_torques";
-    assert_eq!(own.joint_torques(&[f64::INFINITY, 0.0]), Err(Error::NotFinite { input }));
+    assert_eq!(
+        own.joint_torques(&[f64::INFINITY, 0.0]),
+        Err(Error::NotFinite { input })
+    );
     let sum = Transmission::new(&[[1.0, 1.0], [1.0, -1.0]])?;
     assert_eq!(sum.motor_velocities(&[f64::MAX; 2]), Err(Error::Overflow));
-    let limits = [Interval { least: 0.1, most: 1.0 }, Interval::symmetric(1.0)];
-    assert!(matches!(own.speed_intervals(&limits), Err(Error::Setting { .. })));
+    let limits = [
+        Interval {
+            least: 0.1,
+            most: 1.0,
+        },
+        Interval::symmetric(1.0),
+    ];
+    assert!(matches!(
+        own.speed_intervals(&limits),
+        Err(Error::Setting { .. })
+    ));
     let nan = [Interval::symmetric(f64::NAN); 2];
-    assert!(matches!(own.torque_intervals(&nan), Err(Error::Setting { .. })));
+    assert!(matches!(
+        own.torque_intervals(&nan),
+        Err(Error::Setting { .. })
+    ));
     let good = [Interval::symmetric(1.0); 2];
-    assert!(matches!(own.torque_factor(&[0.0; 2], &good), Err(Error::Setting { .. })));
+    assert!(matches!(
+        own.torque_factor(&[0.0; 2], &good),
+        Err(Error::Setting { .. })
+    ));
     let all = [
         Error::NotFinite { input },
         Error::Singular { condition: 1e12 },
-        Error::Singular { condition: f64::INFINITY },
+        Error::Singular {
+            condition: f64::INFINITY,
+        },
         Error::AnotherMode,
         Error::Ambiguous,
-        Error::Setting { setting: "direction", condition: "different from zero" },
+        Error::Setting {
+            setting: "direction",
+            condition: "different from zero",
+        },
         Error::Overflow,
     ];
     let mut texts = all.map(|error| error.to_string());

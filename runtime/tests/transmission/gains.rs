@@ -18,11 +18,7 @@ fn ankle(q: [f64; 2]) -> ([f64; 2], [[f64; 2]; 2], [[[f64; 2]; 2]; 2]) {
         (position, gradient, second)
     };
     let [left, right] = [1.0, -1.0].map(motor);
-    (
-        [left.0, right.0],
-        [left.1, right.1],
-        [left.2, right.2],
-    )
+    ([left.0, right.0], [left.1, right.1], [left.2, right.2])
 }
 
 fn distance(a: &[f64], b: &[f64]) -> f64 {
@@ -89,7 +85,10 @@ fn gains_of_independent_drives_are_found_again() -> Result<(), Error> {
         let own = Transmission::new(&jacobian)?;
         let gains: [f64; 4] = std::array::from_fn(|_| 50.0 + 100.0 * random.uniform());
         let found = own.diagonal_motor_gains(&own.joint_gains(&gains)?)?;
-        assert!(distance(&gains, &found) < 1e-8 * own.condition(), "{found:?}");
+        assert!(
+            distance(&gains, &found) < 1e-8 * own.condition(),
+            "{found:?}"
+        );
         // The full matrix gives the same joint gains.
         let joints = own.joint_gains(&gains)?;
         let full = own.motor_gains(&joints)?;
@@ -118,7 +117,12 @@ fn power_is_equal_on_both_sides() -> Result<(), Error> {
         let joints = dot(&own.joint_torques(&torques)?, &rates);
         assert!((motors - joints).abs() < 1e-13 * (1.0 + motors.abs()));
         // Round trips, and the least norm.
-        assert!(distance(&rates, &own.joint_velocities(&own.motor_velocities(&rates)?)?) < 1e-13);
+        assert!(
+            distance(
+                &rates,
+                &own.joint_velocities(&own.motor_velocities(&rates)?)?
+            ) < 1e-13
+        );
         let wanted: [f64; 3] = random.row();
         let least = own.motor_torques(&wanted)?;
         assert!(distance(&wanted, &own.joint_torques(&least)?) < 1e-12);
@@ -129,7 +133,11 @@ fn power_is_equal_on_both_sides() -> Result<(), Error> {
         let inertia = own.reflected_inertia(&rotors)?;
         let speeds = own.motor_velocities(&rates)?;
         let energy: f64 = rotors.iter().zip(&speeds).map(|(i, w)| i * w * w).sum();
-        let reflected: f64 = inertia.iter().zip(&rates).map(|(row, v)| v * dot(row, &rates)).sum();
+        let reflected: f64 = inertia
+            .iter()
+            .zip(&rates)
+            .map(|(row, v)| v * dot(row, &rates))
+            .sum();
         assert!((energy - reflected).abs() < 1e-12 * (1.0 + energy));
         // Accelerations, with those of the motors at a constant twist.
         let bias: [f64; 5] = random.row();

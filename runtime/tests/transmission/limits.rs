@@ -15,9 +15,10 @@ fn a_factor_reaches_a_limit_and_exceeds_none() -> Result<(), Error> {
         });
         let direction: [f64; 3] = random.row();
         let uses = |numbers: [f64; 4]| {
-            let used = numbers.iter().zip(&limits).map(|(number, limit)| {
-                (number / limit.most).max(number / limit.least)
-            });
+            let used = numbers
+                .iter()
+                .zip(&limits)
+                .map(|(number, limit)| (number / limit.most).max(number / limit.least));
             used.fold(0.0, f64::max)
         };
         let factor = own.speed_factor(&direction, &limits)?;
@@ -27,11 +28,20 @@ fn a_factor_reaches_a_limit_and_exceeds_none() -> Result<(), Error> {
         let torques = own.motor_torques(&direction.map(|x| factor * x))?;
         assert!((uses(torques) - 1.0).abs() < 1e-12);
         // An interval has the factors along an axis, in both directions.
-        let intervals = [own.speed_intervals(&limits)?, own.torque_intervals(&limits)?];
+        let intervals = [
+            own.speed_intervals(&limits)?,
+            own.torque_intervals(&limits)?,
+        ];
         for joint in 0..3 {
             let axis = |sign: f64| std::array::from_fn(|i| if i == joint { sign } else { 0.0 });
-            let ahead = [own.speed_factor(&axis(1.0), &limits)?, own.torque_factor(&axis(1.0), &limits)?];
-            let back = [own.speed_factor(&axis(-1.0), &limits)?, own.torque_factor(&axis(-1.0), &limits)?];
+            let ahead = [
+                own.speed_factor(&axis(1.0), &limits)?,
+                own.torque_factor(&axis(1.0), &limits)?,
+            ];
+            let back = [
+                own.speed_factor(&axis(-1.0), &limits)?,
+                own.torque_factor(&axis(-1.0), &limits)?,
+            ];
             for ((interval, ahead), back) in intervals.iter().zip(ahead).zip(back) {
                 assert!((interval[joint].most - ahead).abs() < 1e-12 * ahead);
                 assert!((interval[joint].least + back).abs() < 1e-12 * back);

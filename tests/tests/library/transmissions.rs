@@ -33,7 +33,13 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
         return Ok(());
     }
     let count = by_tier(STATES);
-    let all = samples(&expected.mechanism, &expected.parameters(), count, 23, false)?;
+    let all = samples(
+        &expected.mechanism,
+        &expected.parameters(),
+        count,
+        23,
+        false,
+    )?;
     let sizes = compiled.info().sizes;
     macro_rules! of_size {
         ($(($n:literal, $r:literal)),*) => {
@@ -44,8 +50,22 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
         };
     }
     of_size!(
-        (1, 1), (2, 1), (3, 1), (2, 2), (3, 2), (4, 2), (3, 3), (4, 3), (5, 3), (4, 4), (5, 4),
-        (6, 4), (5, 5), (6, 6), (7, 6), (8, 6)
+        (1, 1),
+        (2, 1),
+        (3, 1),
+        (2, 2),
+        (3, 2),
+        (4, 2),
+        (3, 3),
+        (4, 3),
+        (5, 3),
+        (4, 4),
+        (5, 4),
+        (6, 4),
+        (5, 5),
+        (6, 6),
+        (7, 6),
+        (8, 6)
     )
 }
 
@@ -63,7 +83,9 @@ struct Worst {
 
 /// Largest difference relative to the largest magnitude.
 fn relative(a: &[f64], b: &[f64]) -> f64 {
-    let scale = b.iter().fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
+    let scale = b
+        .iter()
+        .fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
     let all = a.iter().zip(b).map(|(x, y)| (x - y).abs() / scale);
     all.fold(0.0, f64::max)
 }
@@ -82,7 +104,12 @@ fn check_all<const N: usize, const R: usize>(
         }
     }
     println!("{stem}: {worst:.1e?}");
-    let exact = [worst.power, worst.torques, worst.velocities, worst.accelerations];
+    let exact = [
+        worst.power,
+        worst.torques,
+        worst.velocities,
+        worst.accelerations,
+    ];
     assert!(exact.iter().all(|w| *w < TOLERANCE), "{stem}: {worst:?}");
     assert!(worst.generated < GENERATED, "{stem}: {worst:?}");
     assert!(worst.poses < POSE, "{stem}: {worst:?}");
@@ -133,7 +160,10 @@ impl<const N: usize, const R: usize> Robot<'_, N, R> {
         let powers: Vec<f64> = torques.iter().zip(&speeds).map(|(t, w)| t * w).collect();
         let scale: f64 = powers.iter().map(|power| power.abs()).sum();
         let power: f64 = joints.iter().zip(&rates).map(|(t, w)| t * w).sum();
-        most(&mut worst.power, (powers.iter().sum::<f64>() - power).abs() / scale);
+        most(
+            &mut worst.power,
+            (powers.iter().sum::<f64>() - power).abs() / scale,
+        );
 
         let served = Served(self.model);
         let projected = served.evaluate(Function::ProjectPlatform, self.sample)?;
@@ -142,7 +172,10 @@ impl<const N: usize, const R: usize> Robot<'_, N, R> {
         }
         let again = own.joint_torques(&own.motor_torques(&joints)?)?;
         most(&mut worst.torques, relative(&again, &joints));
-        most(&mut worst.velocities, relative(&own.joint_velocities(&speeds)?, &rates));
+        most(
+            &mut worst.velocities,
+            relative(&own.joint_velocities(&speeds)?, &rates),
+        );
 
         let acceleration: [f64; R] = Self::array(state.acceleration.as_slice());
         let bias = self.accelerations(twist, &[0.0; R])?;
@@ -155,7 +188,10 @@ impl<const N: usize, const R: usize> Robot<'_, N, R> {
         let inverse = own.inverse().as_flattened();
         let condition = own.condition() * own.condition();
         let generated = self.call(Function::Jacobian, &[pose])?;
-        most(&mut worst.generated, relative(inverse, &generated) / condition);
+        most(
+            &mut worst.generated,
+            relative(inverse, &generated) / condition,
+        );
         let found = self.call(Function::TwistFromActuators, &[pose, &speeds])?;
         most(&mut worst.generated, relative(&found, &rates) / condition);
 
@@ -169,8 +205,7 @@ impl<const N: usize, const R: usize> Robot<'_, N, R> {
 
     /// Error of the curvature, from the symmetric part of differences of the Jacobian.
     fn curvature_error(&self) -> Result<f64, Failure> {
-        let found =
-            curvature(|twist: &[f64; R]| self.accelerations(twist, &[0.0; R]))?;
+        let found = curvature(|twist: &[f64; R]| self.accelerations(twist, &[0.0; R]))?;
         let mut slopes = [[[0.0; R]; R]; N];
         for i in 0..R {
             let moved = |by: f64| {
@@ -192,7 +227,10 @@ impl<const N: usize, const R: usize> Robot<'_, N, R> {
         let flat = |all: &[[[f64; R]; R]; N]| all.as_flattened().as_flattened().to_vec();
         // Slides along coordinates have no curvature.
         let (found, slopes) = (flat(&found), flat(&slopes));
-        let size = found.iter().chain(&slopes).fold(1.0_f64, |most, x| most.max(x.abs()));
+        let size = found
+            .iter()
+            .chain(&slopes)
+            .fold(1.0_f64, |most, x| most.max(x.abs()));
         let all = found.iter().zip(&slopes).map(|(a, b)| (a - b).abs() / size);
         Ok(all.fold(0.0, f64::max))
     }

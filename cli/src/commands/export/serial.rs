@@ -9,7 +9,9 @@ use crate::{
 use overact::Model;
 use overact_interchange::{Format, Options};
 use overact_report::layout::{columns, paragraph};
-use overact_robot::{RangeOrigin, RelativeError, Robot, SerialModel, SerialSettings, read_parameters};
+use overact_robot::{
+    RangeOrigin, RelativeError, Robot, SerialModel, SerialSettings, read_parameters,
+};
 use serde_json::json;
 use std::io::{self, Write};
 use std::path::Path;
@@ -85,7 +87,11 @@ pub(super) fn run(
 fn report(model: &SerialModel) -> String {
     let percent = |value: f64| {
         let value = 100.0 * value;
-        if value >= 1e-3 { format!("{value:.3}") } else { format!("{value:.1e}") }
+        if value >= 1e-3 {
+            format!("{value:.3}")
+        } else {
+            format!("{value:.1e}")
+        }
     };
     let row = |name: &str, error: Option<RelativeError>| {
         let cells = error.map_or_else(
@@ -105,7 +111,12 @@ fn report(model: &SerialModel) -> String {
     let mut text = columns(&rows, &[true]);
     let ranges = model.coordinates.iter().zip(&model.half_ranges);
     let ranges: Vec<String> = ranges
-        .map(|(name, range)| format!("{name} ± {}", overact_identification::significant(*range, 3)))
+        .map(|(name, range)| {
+            format!(
+                "{name} ± {}",
+                overact_identification::significant(*range, 3)
+            )
+        })
         .collect();
     let origin = match model.origin {
         RangeOrigin::Limits => "limits of the description",
