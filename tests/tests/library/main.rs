@@ -18,4 +18,3 @@ mod power;
 mod range;
 mod ranks;
 mod singularities;
-mod transmissions;

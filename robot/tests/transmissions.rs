@@ -1,22 +1,30 @@
-//! Transmissions of the runtime with the generated Jacobian of every robot whose motors are not its
+//! Transmissions of the runtime with the Jacobian of every robot of `robots/` whose motors are not its
 //! coordinates.
 //!
-//! The power is equal on both sides, round trips return, and the results agree with the generated
+//! The power is equal on both sides, round trips return, and the results agree with the robot's own
 //! functions of the same quantities. The derivative of the Jacobian follows from accelerations, and
 //! is compared with differences.
 
 use overact::transmission::{Transmission, curvature};
 use overact::{Function, Model};
-use overact_tests::support::library::described;
-use overact_tests::support::sample::samples;
-use overact_tests::support::{Failure, Sample, Served};
+use overact_codegen::{Request, derivation::MotionInput, mechanism::Mechanism};
+use overact_robot::{CompiledFile, InterpretedRobot, Robot};
 use overact_tier::by_tier;
+use rand_pcg::Pcg64;
+use std::path::PathBuf;
 
+type Failure = Box<dyn std::error::Error>;
+
+/// Robots of the default tier: a skeleton, a skeleton with slides, redundant motors, a platform of
+/// six coordinates, and one with parasitic motion.
+const SOME: [&str; 5] = ["ankle", "dualv", "hexapod", "spatial_3rps", "tricept"];
 /// States of each robot in the default tier and in the full one.
-const STATES: [usize; 2] = [4, 100];
+const STATES: [usize; 2] = [5, 40];
+/// Half ranges of random states, rad and in units of the robot's length.
+const RANGES: [f64; 2] = [0.15, 0.08];
 /// Largest error of power, torques, velocities and accelerations, relative to the largest number.
 const TOLERANCE: f64 = 1e-12;
-/// Largest difference from the generated pseudo-inverse, which divides by determinants, in units of
+/// Largest difference from the robot's pseudo-inverse, which divides by determinants, in units of
 /// the squared condition number.
 const GENERATED: f64 = 1e-12;
 /// Largest error of a pose that is found from the positions of the motors, m or rad.
@@ -25,26 +33,53 @@ const POSE: f64 = 1e-11;
 const STEP: f64 = 1e-4;
 const DIFFERENCES: f64 = 1e-5;
 
-overact_tests::library!(check);
+/// Descriptions of the tier, by name.
+fn stems() -> Vec<(String, PathBuf)> {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../robots");
+    let files = std::fs::read_dir(folder).expect("the library").flatten();
+    let descriptions = files.map(|entry| entry.path());
+    let named = descriptions.filter(|path| path.extension().is_some_and(|e| e == "toml"));
+    let named = named.map(|path| {
+        let stem = path.file_stem().unwrap_or_default();
+        (stem.to_string_lossy().into_owned(), path.clone())
+    });
+    let is_tested = |stem: &str| by_tier([SOME.contains(&stem), true]);
+    let mut all: Vec<(String, PathBuf)> = named.filter(|(stem, _)| is_tested(stem)).collect();
+    all.sort();
+    all
+}
 
-fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
-    let (model, expected) = described(stem)?;
-    if model.mechanism.is_tree() {
-        return Ok(());
+/// Functions of the test.
+fn needs(mechanism: &Mechanism, function: Function, from: MotionInput) -> bool {
+    function == Function::Jacobian || InterpretedRobot::serves(mechanism, function, from)
+}
+
+#[test]
+fn transmissions_of_all_robots_with_loops() -> Result<(), Failure> {
+    let mut tested = 0;
+    for (stem, path) in stems() {
+        let request = Request {
+            wanted: &needs,
+            ..Robot::request()
+        };
+        let compiled = CompiledFile::read(&path, &request);
+        let robot = Robot::new(compiled.map_err(|error| error.render(false))?);
+        if robot.model().model().is_tree() {
+            continue;
+        }
+        check(&stem, robot.model())?;
+        tested += 1;
     }
-    let count = by_tier(STATES);
-    let all = samples(
-        &expected.mechanism,
-        &expected.parameters(),
-        count,
-        23,
-        false,
-    )?;
-    let sizes = compiled.info().sizes;
+    assert!(tested >= SOME.len());
+    Ok(())
+}
+
+fn check(stem: &str, model: &InterpretedRobot) -> Result<(), Failure> {
+    let sizes = model.info().sizes;
     macro_rules! of_size {
         ($(($n:literal, $r:literal)),*) => {
             match (sizes.actuators, sizes.dof) {
-                $(($n, $r) => check_all::<$n, $r>(stem, compiled, &all),)*
+                $(($n, $r) => check_all::<$n, $r>(stem, model),)*
                 other => Err(format!("{stem}: add the size {other:?}").into()),
             }
         };
@@ -90,18 +125,58 @@ fn relative(a: &[f64], b: &[f64]) -> f64 {
     all.fold(0.0, f64::max)
 }
 
+/// Numbers in [-1, 1].
+fn draw<const K: usize>(random: &mut Pcg64) -> [f64; K] {
+    use rand_distr::{Distribution, StandardUniform};
+    std::array::from_fn(|_| {
+        let number: f64 = StandardUniform.sample(random);
+        2.0 * number - 1.0
+    })
+}
+
 fn check_all<const N: usize, const R: usize>(
     stem: &str,
-    model: &dyn Model,
-    all: &[Sample],
+    model: &InterpretedRobot,
 ) -> Result<(), Failure> {
     let mut worst = Worst::default();
-    for (at, sample) in all.iter().enumerate() {
-        let own = Robot::<N, R> { model, sample };
+    let mut random = Pcg64::new(23, 0);
+    let [turn, slide] = RANGES;
+    let length = slide * model.model().mechanism.length_scale();
+    let is_turn = |name: &str| name.starts_with('r') || name == "phi";
+    let names = model.info().coordinates;
+    let has_platform = model.model().mechanism.platform.is_some();
+    let (mut done, mut drawn) = (0, 0);
+    while done < by_tier(STATES) {
+        drawn += 1;
+        assert!(drawn < 1000, "{stem}: too few states within reach");
+        let numbers: [f64; R] = draw(&mut random);
+        let step: [f64; R] = std::array::from_fn(|i| {
+            let range = if has_platform && !is_turn(names[i]) {
+                length
+            } else {
+                turn.min(length.max(slide))
+            };
+            numbers[i] * range
+        });
+        let mut pose = model.info().home_pose.to_vec();
+        model.displace(&mut pose, &step);
+        let own = State::<N, R> {
+            model,
+            start: model.info().home_pose,
+            pose,
+            twist: draw(&mut random),
+            acceleration: draw(&mut random),
+            torques: draw(&mut random),
+        };
+        // A state that a leg does not reach.
+        if own.jacobian(&own.pose).is_err() {
+            continue;
+        }
         own.check(&mut worst)?;
-        if at == 0 {
+        if done == 0 {
             worst.curvature = own.curvature_error()?;
         }
+        done += 1;
     }
     println!("{stem}: {worst:.1e?}");
     let exact = [
@@ -117,13 +192,17 @@ fn check_all<const N: usize, const R: usize>(
     Ok(())
 }
 
-/// A robot at a sample.
-struct Robot<'a, const N: usize, const R: usize> {
-    model: &'a dyn Model,
-    sample: &'a Sample,
+/// A robot at a state.
+struct State<'a, const N: usize, const R: usize> {
+    model: &'a InterpretedRobot,
+    start: &'a [f64],
+    pose: Vec<f64>,
+    twist: [f64; R],
+    acceleration: [f64; R],
+    torques: [f64; N],
 }
 
-impl<const N: usize, const R: usize> Robot<'_, N, R> {
+impl<const N: usize, const R: usize> State<'_, N, R> {
     fn array<const K: usize>(numbers: &[f64]) -> [f64; K] {
         std::array::from_fn(|at| numbers[at])
     }
@@ -143,17 +222,14 @@ impl<const N: usize, const R: usize> Robot<'_, N, R> {
 
     /// Accelerations of the motors.
     fn accelerations(&self, twist: &[f64], acceleration: &[f64]) -> Result<[f64; N], Failure> {
-        let inputs = [&self.sample.state.pose, twist, acceleration];
+        let inputs = [&self.pose, twist, acceleration];
         let joints = self.call(Function::JointAccelerations, &inputs)?;
         Ok(std::array::from_fn(|a| self.model.of_actuator(a, &joints)))
     }
 
     fn check(&self, worst: &mut Worst) -> Result<(), Failure> {
-        let state = &self.sample.state;
-        let (pose, twist) = (&state.pose[..], state.twist.as_slice());
+        let (pose, rates, torques) = (&self.pose[..], self.twist, self.torques);
         let own = Transmission::new(&self.jacobian(pose)?)?;
-        let rates: [f64; R] = Self::array(twist);
-        let torques: [f64; N] = Self::array(&self.sample.torques);
         let most = |worst: &mut f64, error: f64| *worst = worst.max(error);
 
         let (speeds, joints) = (own.motor_velocities(&rates)?, own.joint_torques(&torques)?);
@@ -165,10 +241,9 @@ impl<const N: usize, const R: usize> Robot<'_, N, R> {
             (powers.iter().sum::<f64>() - power).abs() / scale,
         );
 
-        let served = Served(self.model);
-        let projected = served.evaluate(Function::ProjectPlatform, self.sample)?;
         if self.model.pulls().is_empty() {
-            most(&mut worst.torques, relative(&joints, projected.as_slice()));
+            let projected = self.call(Function::ProjectPlatform, &[pose, &torques])?;
+            most(&mut worst.torques, relative(&joints, &projected));
         }
         let again = own.joint_torques(&own.motor_torques(&joints)?)?;
         most(&mut worst.torques, relative(&again, &joints));
@@ -177,10 +252,10 @@ impl<const N: usize, const R: usize> Robot<'_, N, R> {
             relative(&own.joint_velocities(&speeds)?, &rates),
         );
 
-        let acceleration: [f64; R] = Self::array(state.acceleration.as_slice());
-        let bias = self.accelerations(twist, &[0.0; R])?;
+        let acceleration = self.acceleration;
+        let bias = self.accelerations(&rates, &[0.0; R])?;
         let motors = own.motor_accelerations(&acceleration, &bias)?;
-        let expected = self.accelerations(twist, &acceleration)?;
+        let expected = self.accelerations(&rates, &acceleration)?;
         most(&mut worst.accelerations, relative(&motors, &expected));
         let back = own.joint_accelerations(&motors, &bias)?;
         most(&mut worst.accelerations, relative(&back, &acceleration));
@@ -196,7 +271,7 @@ impl<const N: usize, const R: usize> Robot<'_, N, R> {
         most(&mut worst.generated, relative(&found, &rates) / condition);
 
         let positions = self.call(Function::ActuatorPositions, &[pose])?;
-        let mut found = self.sample.start.clone();
+        let mut found = self.start.to_vec();
         self.model.pose_from_actuators(&positions, &mut found)?;
         let pairs = found.iter().zip(pose).map(|(a, b)| (a - b).abs());
         most(&mut worst.poses, pairs.fold(0.0, f64::max));
@@ -209,7 +284,7 @@ impl<const N: usize, const R: usize> Robot<'_, N, R> {
         let mut slopes = [[[0.0; R]; R]; N];
         for i in 0..R {
             let moved = |by: f64| {
-                let mut pose = self.sample.state.pose.clone();
+                let mut pose = self.pose.clone();
                 let mut step = [0.0; R];
                 step[i] = by;
                 self.model.displace(&mut pose, &step);
