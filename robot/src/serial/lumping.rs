@@ -2,8 +2,9 @@
 //!
 //! The inertia matrix and the torque of gravity are linear in the parameters. They are fitted by
 //! least squares over the states. Bodies are physically consistent: the pseudo-inertia of each is
-//! L Lᵀ plus a small multiple of the unit matrix (Rucker, Wensing 2022). The unknowns are the
-//! entries of L, found by the method of Levenberg and Marquardt.
+//! L Lᵀ plus a small multiple of the unit matrix (Rucker, Wensing 2022). Rotor inertias on the joints
+//! are squares. The unknowns are the entries of L and the roots, found by the method of Levenberg and
+//! Marquardt.
 
 use super::pseudo_inertia::{parameters, pseudo_inertia};
 use super::states::State;
@@ -87,7 +88,7 @@ pub(super) struct Lumping<'a> {
     pub(super) tree: &'a Tree,
     pub(super) states: &'a [State],
     pub(super) gravity: Vector3<f64>,
-    /// Rotor inertias on the joints.
+    /// Rotor inertias on the joints, r, at the start of the fit; empty if the file has none.
     pub(super) armature: &'a [f64],
     /// Length of the robot, m.
     pub(super) length: f64,
@@ -96,27 +97,25 @@ pub(super) struct Lumping<'a> {
 }
 
 impl Lumping<'_> {
-    /// Physically consistent parameters, 10 B.
+    /// Physically consistent parameters of the bodies, 10 B, then nonnegative rotor inertias.
     pub(super) fn fitted(&self) -> Vec<f64> {
         let scales = Scales::new(self.states);
         let units = self.units(&scales);
         let (factor, right) = self.factor(&scales, &units);
-        let own: Vec<f64> = self
-            .own
-            .iter()
-            .zip(&units)
-            .map(|(own, unit)| own / unit)
-            .collect();
+        let all = self.own.iter().chain(self.armature);
+        let own: Vec<f64> = all.zip(&units).map(|(own, unit)| own / unit).collect();
+        let (of_bodies, rotors) = own.split_at(self.own.len());
         let residual = |all: &[f64]| (&factor * DVector::from_column_slice(all) - &right).norm();
         let raised = |floor: f64| -> Vec<f64> {
-            let bodies = own.chunks(INERTIAL);
-            bodies.flat_map(|body| raised(body, floor)).collect()
+            let bodies = of_bodies.chunks(INERTIAL);
+            let bodies = bodies.flat_map(|body| raised(body, floor));
+            bodies.chain(rotors.iter().copied()).collect()
         };
         let kept = raised(FLOOR);
         let found = if residual(&kept) < EXACT * (self.states.len() as f64).sqrt() {
             kept
         } else {
-            search(&factor, &right, &raised(START_FLOOR))
+            search(&factor, &right, &raised(START_FLOOR), of_bodies.len())
         };
         found
             .iter()
@@ -125,7 +124,8 @@ impl Lumping<'_> {
             .collect()
     }
 
-    /// Units of the parameters: of a body as heavy and as long as the robot.
+    /// Units of the parameters: of a body as heavy and as long as the robot, and the inertias of the
+    /// coordinates.
     fn units(&self, scales: &Scales) -> Vec<f64> {
         let length = self.length;
         let mut mass = f64::MIN_POSITIVE;
@@ -146,7 +146,9 @@ impl Lumping<'_> {
             _ => mass,
         };
         let bodies = self.tree.bodies.iter();
-        bodies.flat_map(|_| (0..INERTIAL).map(one)).collect()
+        let bodies = bodies.flat_map(|_| (0..INERTIAL).map(one));
+        let rotors = scales.coordinates.iter().zip(self.armature);
+        bodies.chain(rotors.map(|(root, _)| root * root)).collect()
     }
 
     /// Triangular factor of the equations of all states, with its right side.
@@ -178,15 +180,20 @@ impl Lumping<'_> {
         mut row: usize,
     ) -> usize {
         let d = &scales.coordinates;
-        let (r, columns) = (d.len(), units.len());
+        let (r, columns, of_bodies) = (d.len(), units.len(), self.own.len());
         let still = vec![0.0; r];
-        let mut write = |weight: f64, source: &DMatrix<f64>, line: usize, right: f64| {
-            for (column, unit) in units.iter().enumerate() {
-                all[(row, column)] = weight * source[(line, column)] * unit;
-            }
-            all[(row, columns)] = weight * right;
-            row += 1;
-        };
+        let mut write =
+            |weight: f64, source: &DMatrix<f64>, line: usize, rotor: Option<usize>, right: f64| {
+                for (column, unit) in units.iter().enumerate() {
+                    let entry = match column.checked_sub(of_bodies) {
+                        None => source[(line, column)],
+                        Some(at) => f64::from(u8::from(rotor == Some(at))),
+                    };
+                    all[(row, column)] = weight * entry * unit;
+                }
+                all[(row, columns)] = weight * right;
+                row += 1;
+            };
         for axis in 0..r {
             let mut unit = still.clone();
             unit[axis] = 1.0;
@@ -194,13 +201,9 @@ impl Lumping<'_> {
                 .tree
                 .columns(&state.pose, &still, &unit, &Vector3::zeros());
             for line in 0..r {
-                let rotor = if line == axis {
-                    self.armature[axis]
-                } else {
-                    0.0
-                };
+                let rotor = (line == axis).then_some(axis);
                 let weight = 1.0 / (d[line] * d[axis] * scales.inertia);
-                write(weight, &source, line, state.inertia[(line, axis)] - rotor);
+                write(weight, &source, line, rotor, state.inertia[(line, axis)]);
             }
         }
         let source = self
@@ -213,7 +216,7 @@ impl Lumping<'_> {
             } else {
                 0.0
             };
-            write(weight, &source, line, state.gravity[line]);
+            write(weight, &source, line, None, state.gravity[line]);
         }
         row
     }
@@ -243,24 +246,30 @@ const TRIANGLE: [(usize, usize); INERTIAL] = [
     (3, 3),
 ];
 
-/// L of the bodies, entry by entry.
-fn triangles(start: &[f64]) -> DVector<f64> {
-    let bodies = start.chunks(INERTIAL).flat_map(|body| {
+/// L of the bodies, entry by entry, then roots of the rotor inertias.
+fn roots(start: &[f64], of_bodies: usize) -> DVector<f64> {
+    let (bodies, rotors) = start.split_at(of_bodies);
+    let rotors = rotors.iter().map(|inertia| inertia.max(START_FLOOR).sqrt());
+    let bodies = bodies.chunks(INERTIAL).flat_map(|body| {
         let rest = pseudo_inertia(body) - Matrix4::identity() * (0.5 * FLOOR);
         let lower = rest.cholesky().map_or(Matrix4::identity(), |own| own.l());
         TRIANGLE.map(|at| lower[at])
     });
-    DVector::from_iterator(start.len(), bodies)
+    DVector::from_iterator(start.len(), bodies.chain(rotors))
 }
 
-/// Parameters of all bodies, and their derivatives by the entries of L.
-fn bodies(triangles: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
-    let size = triangles.len();
+/// Parameters of bodies and rotors, and their derivatives by their roots.
+fn squares(roots: &DVector<f64>, of_bodies: usize) -> (DVector<f64>, DMatrix<f64>) {
+    let size = roots.len();
     let (mut all, mut slopes) = (DVector::zeros(size), DMatrix::zeros(size, size));
-    for start in (0..size).step_by(INERTIAL) {
+    for at in of_bodies..size {
+        all[at] = roots[at] * roots[at];
+        slopes[(at, at)] = 2.0 * roots[at];
+    }
+    for start in (0..of_bodies).step_by(INERTIAL) {
         let mut lower = Matrix4::zeros();
         for (at, place) in TRIANGLE.iter().enumerate() {
-            lower[*place] = triangles[start + at];
+            lower[*place] = roots[start + at];
         }
         let whole = lower * lower.transpose() + Matrix4::identity() * (0.5 * FLOOR);
         for (at, value) in parameters(&whole).into_iter().enumerate() {
@@ -280,15 +289,22 @@ fn bodies(triangles: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
 }
 
 /// Consistent parameters of least squares, by Levenberg and Marquardt.
-fn search(factor: &DMatrix<f64>, right: &DVector<f64>, start: &[f64]) -> Vec<f64> {
+///
+/// The first `of_bodies` are those of bodies, the others rotor inertias.
+fn search(
+    factor: &DMatrix<f64>,
+    right: &DVector<f64>,
+    start: &[f64],
+    of_bodies: usize,
+) -> Vec<f64> {
     let anchor = DVector::from_column_slice(start);
     let information = factor.tr_mul(factor)
         + DMatrix::identity(start.len(), start.len()) * REGULARISATION.powi(2);
     let cost = |all: &DVector<f64>| {
         (factor * all - right).norm_squared() + (REGULARISATION * (all - &anchor)).norm_squared()
     };
-    let mut unknown = triangles(start);
-    let (mut all, mut slopes) = bodies(&unknown);
+    let mut unknown = roots(start, of_bodies);
+    let (mut all, mut slopes) = squares(&unknown, of_bodies);
     let (mut best, mut damping) = (cost(&all), 1e-3);
     let mut quiet = 0;
     for _ in 0..STEPS {
@@ -303,7 +319,7 @@ fn search(factor: &DMatrix<f64>, right: &DVector<f64>, start: &[f64]) -> Vec<f64
         }
         let step = damped.cholesky().map(|own| own.solve(&gradient));
         let moved = step.map(|step| &unknown - step);
-        let tried = moved.map(|moved| (cost(&bodies(&moved).0), moved));
+        let tried = moved.map(|moved| (cost(&squares(&moved, of_bodies).0), moved));
         match tried.filter(|(found, _)| *found < best) {
             Some((found, moved)) => {
                 quiet = if best - found < DECREASE * best {
@@ -312,7 +328,7 @@ fn search(factor: &DMatrix<f64>, right: &DVector<f64>, start: &[f64]) -> Vec<f64
                     0
                 };
                 (best, unknown) = (found, moved);
-                (all, slopes) = bodies(&unknown);
+                (all, slopes) = squares(&unknown, of_bodies);
                 damping = (damping / 4.0).max(1e-12);
             }
             None if damping > 1e12 => break,
@@ -327,7 +343,7 @@ fn search(factor: &DMatrix<f64>, right: &DVector<f64>, start: &[f64]) -> Vec<f64
 
 #[cfg(test)]
 mod tests {
-    use super::{bodies, parameters, pseudo_inertia, raised, search, triangles};
+    use super::{parameters, pseudo_inertia, raised, roots, search, squares};
     use nalgebra::{DMatrix, DVector};
 
     const BODY: [f64; 10] = [0.4, 0.01, -0.02, 0.5, 0.03, 0.3, 0.1, -0.2, 0.05, 1.5];
@@ -337,19 +353,19 @@ mod tests {
         let again = parameters(&pseudo_inertia(&BODY));
         assert!(BODY.iter().zip(again).all(|(a, b)| (a - b).abs() < 1e-15));
         assert_eq!(raised(&BODY, 1e-9), BODY);
-        let (all, _) = bodies(&triangles(&BODY));
+        let (all, _) = squares(&roots(&BODY, 10), 10);
         assert!((all - DVector::from_column_slice(&BODY)).norm() < 1e-12);
     }
 
     #[test]
     fn slopes_are_derivatives() {
-        let start = triangles(&BODY);
-        let (_, slopes) = bodies(&start);
-        for at in 0..10 {
+        let start = roots(&[&BODY[..], &[0.3]].concat(), 10);
+        let (_, slopes) = squares(&start, 10);
+        for at in 0..11 {
             let moved = |by: f64| {
                 let mut moved = start.clone();
                 moved[at] += by;
-                bodies(&moved).0
+                squares(&moved, 10).0
             };
             let slope = (moved(1e-6) - moved(-1e-6)) / 2e-6;
             assert!((slope - slopes.column(at)).norm() < 1e-8);
@@ -361,12 +377,12 @@ mod tests {
     fn the_search_finds_the_best_consistent_body() {
         let factor = DMatrix::identity(10, 10);
         let start = [0.2, 0.0, 0.0, 0.2, 0.0, 0.2, 0.0, 0.0, 0.0, 1.0];
-        let found = search(&factor, &DVector::from_column_slice(&BODY), &start);
+        let found = search(&factor, &DVector::from_column_slice(&BODY), &start, 10);
         let off = found.iter().zip(&BODY).map(|(a, b)| (a - b).abs());
         assert!(off.fold(0.0, f64::max) < 1e-8);
         let mut wrong = BODY;
         (wrong[9], wrong[6], wrong[7], wrong[8]) = (-0.5, 0.0, 0.0, 0.0);
-        let found = search(&factor, &DVector::from_column_slice(&wrong), &start);
+        let found = search(&factor, &DVector::from_column_slice(&wrong), &start, 10);
         assert!(found[9] > 0.0 && found[9] < 1e-4, "{found:?}");
         assert!(pseudo_inertia(&found).symmetric_eigenvalues().min() > 0.0);
         assert!((found[0] - BODY[0]).abs() < 1e-5);

@@ -92,7 +92,7 @@ pub struct SerialModel {
     pub coordinates: Vec<String>,
     /// Centres of their ranges, rad or m.
     pub home: Vec<f64>,
-    /// Half ranges of the states, rad or m; velocities reach this value per second.
+    /// Half ranges of the states, rad or m.
     pub half_ranges: Vec<f64>,
     /// Origin of the ranges.
     pub origin: RangeOrigin,
@@ -166,7 +166,7 @@ impl Robot {
         let plant = Plant::new(self, &value).map_err(at_home)?;
         let mut armature = plant.rotors_at_home().map_err(at_home)?;
         if settings.format == Format::Urdf {
-            armature.iter_mut().for_each(|inertia| *inertia = 0.0);
+            armature.clear();
         }
         let next = settings.seed.wrapping_add(1);
         let fitted = plant.drawn(settings.fitted_states, next).map_err(refused)?;
@@ -183,7 +183,9 @@ impl Robot {
             length: mechanism.length_scale(),
             own: &own,
         };
-        let bodies = lumping.fitted();
+        let mut bodies = lumping.fitted();
+        armature = bodies.split_off(own.len());
+        armature.resize(mechanism.dof(), 0.0);
         let errors = Errors {
             tree: &tree,
             bodies: DVector::from_column_slice(&bodies),

@@ -4,9 +4,11 @@ use super::Refusal;
 use crate::robot::Robot;
 use nalgebra::{DMatrix, DVector};
 use overact::{Columns, Error, Function, Info, Model};
+use overact_codegen::description::Run;
 use rand_distr::{Distribution, StandardUniform};
 use rand_pcg::Pcg64;
 use serde::Serialize;
+use std::f64::consts::TAU;
 
 /// Half range of a coordinate without runs and limits, rad and m.
 const ASSUMED: [f64; 2] = [std::f64::consts::FRAC_PI_4, 0.1];
@@ -15,6 +17,8 @@ const TRIED: usize = 100;
 const HALVINGS: usize = 6;
 /// Number of draws for each state.
 const DRAWS: usize = 20;
+/// Samples of a run for its largest displacements.
+const SAMPLES: usize = 1024;
 
 /// Origin of the ranges of the coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -22,7 +26,7 @@ const DRAWS: usize = 20;
 pub enum RangeOrigin {
     /// `position` of `[excitation]`.
     Limits,
-    /// Largest displacements of the runs of `[experiment]`.
+    /// Largest displacements of the runs of `[experiment]`; the states are those of the runs.
     Runs,
     /// Assumed, and halved until most states are within reach.
     Assumed,
@@ -48,7 +52,7 @@ fn uniform(random: &mut Pcg64) -> f64 {
     StandardUniform.sample(random)
 }
 
-/// States drawn from a box around home, and the number of draws outside the workspace.
+/// States drawn around home, and the number of draws outside the workspace.
 #[derive(Debug)]
 pub(super) struct States {
     pub(super) all: Vec<State>,
@@ -172,12 +176,11 @@ impl<'a> Plant<'a> {
         let runs = description.experiment.iter().flat_map(|table| &table.runs);
         let mut peaks = vec![0.0_f64; self.info.sizes.dof];
         for run in runs {
-            let mut own = vec![0.0; peaks.len()];
-            for term in &run.terms {
-                own[term.index] += term.amplitude.abs();
+            for sample in 0..SAMPLES {
+                let [displacement, _] = self.motion(run, sample as f64 / SAMPLES as f64);
+                let pairs = peaks.iter_mut().zip(displacement);
+                pairs.for_each(|(peak, own)| *peak = peak.max(own.abs()));
             }
-            let pairs = peaks.iter_mut().zip(own);
-            pairs.for_each(|(peak, own)| *peak = peak.max(own));
         }
         if peaks.iter().any(|peak| *peak > 0.0) {
             (self.ranges, self.origin) = (peaks, RangeOrigin::Runs);
@@ -200,7 +203,39 @@ impl<'a> Plant<'a> {
         }
     }
 
-    /// Random states in the ranges, with velocities of up to a half range per second.
+    /// Displacement from home and velocity of a run at a fraction of its period.
+    fn motion(&self, run: &Run, fraction: f64) -> [Vec<f64>; 2] {
+        let mut motion = [(); 2].map(|()| vec![0.0; self.info.sizes.dof]);
+        for term in &run.terms {
+            let multiple = f64::from(term.harmonic);
+            let (sine, cosine) = (TAU * multiple * fraction + term.phase).sin_cos();
+            motion[0][term.index] += term.amplitude * sine;
+            motion[1][term.index] += term.amplitude * cosine * TAU * multiple * run.fundamental;
+        }
+        motion
+    }
+
+    /// Random displacement from home and velocity: of the runs, or in the ranges, with velocities of
+    /// up to a half range per second.
+    fn draw(&self, random: &mut Pcg64) -> [Vec<f64>; 2] {
+        let experiment = self.robot.description().experiment.as_ref();
+        let runs = experiment.map_or(&[][..], |table| &table.runs);
+        let chosen = (uniform(random) * runs.len() as f64) as usize;
+        match runs
+            .get(chosen)
+            .filter(|_| self.origin == RangeOrigin::Runs)
+        {
+            Some(run) => self.motion(run, uniform(random)),
+            None => [(); 2].map(|()| {
+                let ranges = self.ranges.iter();
+                ranges
+                    .map(|range| range * (2.0 * uniform(random) - 1.0))
+                    .collect()
+            }),
+        }
+    }
+
+    /// Random states within reach.
     pub(super) fn drawn(&self, count: usize, seed: u64) -> Result<States, Refusal> {
         let mut random = Pcg64::new(u128::from(seed), 0);
         let mut states = States {
@@ -208,16 +243,9 @@ impl<'a> Plant<'a> {
             rejected: 0,
         };
         while states.all.len() < count {
-            let mut around = |centre: &[f64]| -> Vec<f64> {
-                let pairs = centre.iter().zip(&self.ranges);
-                pairs
-                    .map(|(own, range)| own + range * (2.0 * uniform(&mut random) - 1.0))
-                    .collect()
-            };
-            let (pose, twist) = (
-                around(self.info.home_pose),
-                around(&vec![0.0; self.ranges.len()]),
-            );
+            let [displacement, twist] = self.draw(&mut random);
+            let pairs = self.info.home_pose.iter().zip(displacement);
+            let pose = pairs.map(|(home, own)| home + own).collect();
             match self.state(pose, twist) {
                 Ok(state) => states.all.push(state),
                 Err(error) => {

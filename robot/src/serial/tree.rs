@@ -48,7 +48,7 @@ impl Tree {
         if mechanism.platform.is_some() {
             return Err(Refusal {
                 message: "the robot has a platform on legs, and no skeleton that could be a serial robot".to_owned(),
-                help: "describe one leg without an `end`, whose joints are the independent coordinates, and the others as chains; or export a simulation model of the loops from CAD".to_owned(),
+                help: "describe the platform by joints, as a leg without an `end`, and the other legs as chains that end on it".to_owned(),
             });
         }
         let free = mechanism.legs.iter().skip(1).find(|leg| leg.end.is_none());

@@ -119,8 +119,8 @@ fn report(model: &SerialModel) -> String {
         })
         .collect();
     let origin = match model.origin {
-        RangeOrigin::Limits => "limits of the description",
-        RangeOrigin::Runs => "largest displacements of its runs",
+        RangeOrigin::Limits => "of [excitation]",
+        RangeOrigin::Runs => "of the runs",
         RangeOrigin::Assumed => "assumed",
     };
     paragraph(
