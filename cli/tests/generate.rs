@@ -417,3 +417,23 @@ fn online_estimation_comes_with_c() {
     let refused = bench.run(&["generate", "my.toml", "--online", "-o", "my.rs"]);
     assert_eq!(refused.code, Some(2), "{}", refused.err);
 }
+
+#[test]
+fn transmissions_come_with_c() {
+    let bench = Bench::new();
+    bench.good(&["new", "serial-2r", "my.toml"]);
+    let arguments = [
+        "generate",
+        "my.toml",
+        "--lang",
+        "cpp",
+        "--functions",
+        "control",
+    ];
+    bench.good(&[&arguments[..], &["--transmission", "-o", "c"]].concat());
+    for file in overact::transmission::C_FILES {
+        assert_eq!(bench.read(&format!("c/{}", file.name)), file.text);
+    }
+    let refused = bench.run(&["generate", "my.toml", "--transmission", "-o", "my.rs"]);
+    assert_eq!(refused.code, Some(2), "{}", refused.err);
+}

@@ -283,7 +283,7 @@ fn the_controller_is_generated_compiled_and_run_as_shown() {
         rust: "controller/src/main.rs",
         ..Files::default()
     };
-    assert_eq!(follow(&bench, &text, &files), 5);
+    assert_eq!(follow(&bench, &text, &files), 8);
 }
 
 #[test]

@@ -33,6 +33,7 @@
 //! | `writing` | the results of the other stages | TOML with a comment at each choice |
 //! | `origins` | errors of the description | errors of the file |
 //! | `export` | the file and parameters | the file with these parameters |
+//! | `serial` | a tree of bodies | MJCF or URDF |
 
 mod account;
 #[cfg(test)]
@@ -56,6 +57,7 @@ mod par;
 mod plan;
 mod prune;
 mod sdf;
+mod serial;
 mod unsupported;
 mod urdf;
 mod writing;
@@ -67,3 +69,4 @@ pub use files::Errors;
 pub use format::Format;
 pub use import::{ClosureMisfit, Imported, import};
 pub use options::Options;
+pub use serial::{SerialBody, SerialTree, write_serial};

@@ -1,7 +1,7 @@
 //! User choices that override those of the importer.
 
 /// Choices that override those of the importer.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
     /// Name of the robot; by default the name of the file's model.
     pub name: Option<String>,

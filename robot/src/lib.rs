@@ -48,6 +48,7 @@
 //! - `identification`: logs and virtual runs, identification from runs or factor files and for
 //!   every partition, and uses of its result: instruments, tracking, motor-side values, inputs of
 //!   functions;
+//! - `serial`: the skeleton as a serial robot with lumped inertia;
 //! - [`inspection`]: composition and cost of a model.
 
 /// Compiles the programs of the page on interfaces.
@@ -76,6 +77,7 @@ mod interpreted;
 mod names;
 mod parameters;
 mod robot;
+mod serial;
 
 pub use calibration::variants::Variants;
 pub use check::{CheckedFile, check, check_text};
@@ -98,3 +100,4 @@ pub use names::kept::kept_actuators;
 pub use names::named::{function_of_model, values};
 pub use parameters::given_parameters::{GivenParameters, read_parameters};
 pub use robot::Robot;
+pub use serial::{RangeOrigin, RelativeError, SerialModel, SerialSettings};

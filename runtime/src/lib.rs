@@ -31,8 +31,9 @@
 //! The runtime has the [`Model`] trait, [`Error`], a few functions of [`math`], and the macro
 //! `#[redundant_robot("robot.toml")]`. Forward kinematics is in [`forward`], numeric inverse
 //! kinematics in [`inverse`], poses of platforms with parasitic motion in [`parasitic_motion`], and the
-//! actuator projection for any kept actuators in [`partition`]. [`tension`] distributes the forces of cable robots. [`online`] estimates parameters while
-//! the robot moves.
+//! actuator projection for any kept actuators in [`partition`]. [`tension`] distributes the forces of
+//! cable robots. [`transmission`] converts torques, gains and limits between motors and joints, and
+//! [`online`] estimates parameters while the robot moves.
 //!
 //! The crate is `no_std` and allocates nothing. Its features are:
 //!
@@ -47,6 +48,11 @@
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/online.md")]
 mod online_page {}
+
+/// Compiles the program of the page on transmissions.
+#[cfg(all(doctest, feature = "macro"))]
+#[doc = include_str!("../../docs/transmissions.md")]
+mod transmissions_page {}
 
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!(
@@ -70,6 +76,7 @@ pub mod parasitic_motion;
 pub mod partition;
 pub mod simd;
 pub mod tension;
+pub mod transmission;
 mod with_avx;
 mod zeroed_then_fill;
 

@@ -67,7 +67,8 @@ pub(crate) enum Command {
     Manual(shell::Manual),
     /// Import a description from MJCF, URDF, SDFormat or .par, with loops
     Import(import::Arguments),
-    /// Write identified parameters into the MJCF or URDF from which a description was imported
+    /// Write identified parameters into the MJCF or URDF from which a description was imported, or a
+    /// skeleton as a serial robot
     Export(export::Arguments),
 }
 
@@ -93,7 +94,7 @@ impl Command {
             Self::Completions(arguments) => shell::completions(arguments),
             Self::Manual(arguments) => shell::manual(arguments),
             Self::Import(arguments) => import::run(arguments, json),
-            Self::Export(arguments) => export::run(arguments),
+            Self::Export(arguments) => export::run(arguments, json),
         }
     }
 

@@ -12,6 +12,7 @@ use crate::{
 };
 use clap::builder::PossibleValuesParser;
 use module::Module;
+use overact::{online, transmission};
 use overact_codegen::{Choice, Float, Progress as Step, Request, Runtime, mechanism::Mechanism};
 use overact_robot::CompiledFile;
 use std::path::{Path, PathBuf};
@@ -35,6 +36,10 @@ pub(crate) struct Arguments {
     /// Also write the C files of online estimation: overact_online.h and its sources
     #[arg(long)]
     online: bool,
+    /// Also write the C files of transmissions: overact_transmission.h, its source, and a header for
+    /// C++
+    #[arg(long)]
+    transmission: bool,
     /// Write nothing; fail if a file differs from what would be written
     #[arg(long, requires = "output")]
     check: bool,
@@ -125,10 +130,11 @@ impl Arguments {
             let message = "C is a header and a source file: add `-o FOLDER`";
             return Some(message.to_owned());
         }
-        if self.online && !self.lang.has_c() {
-            let message =
-                "`--online` writes C files: add `--lang c`; Rust has the module `overact::online`";
-            return Some(message.to_owned());
+        let of_c = [(self.online, "online"), (self.transmission, "transmission")];
+        if let Some((_, name)) = of_c.iter().find(|(given, _)| *given && !self.lang.has_c()) {
+            return Some(format!(
+                "`--{name}` writes C files: add `--lang c`; Rust has the module `overact::{name}`"
+            ));
         }
         if self.runtime.is_some() && self.lang.has_c() {
             let message = "C uses no crate: leave out `--crate`, or generate Rust";
@@ -183,8 +189,13 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         .map(|(robot, path)| Module::new(robot, path, arguments))
         .collect();
     module::distinct(&modules)?;
-    if let Some(first) = modules.first_mut().filter(|_| arguments.online) {
-        first.add_online(arguments);
+    if let Some(first) = modules.first_mut() {
+        if arguments.online {
+            first.add_files(&online::C_FILES, arguments);
+        }
+        if arguments.transmission {
+            first.add_files(&transmission::C_FILES, arguments);
+        }
     }
     if arguments.check {
         module::compare(&modules)?;

@@ -2,7 +2,7 @@
 
 use super::{Arguments, Language};
 use crate::failure::{Failure, Problem};
-use overact::online::C_FILES;
+use overact::online::CFile;
 use overact_codegen::diagnostic::Code;
 use overact_codegen::{backends::c, backends::rust};
 use overact_robot::CompiledFile;
@@ -81,9 +81,9 @@ impl Module {
         }
     }
 
-    /// Adds the C files of online estimation, which are the same for all robots.
-    pub(super) fn add_online(&mut self, arguments: &Arguments) {
-        let parts = C_FILES.iter().map(|file| ModulePart {
+    /// Adds C files of the runtime, which are the same for all robots.
+    pub(super) fn add_files(&mut self, files: &[CFile], arguments: &Arguments) {
+        let parts = files.iter().map(|file| ModulePart {
             name: file.name.to_owned(),
             file: arguments.output().map(|folder| folder.join(file.name)),
             code: file.text.to_owned(),

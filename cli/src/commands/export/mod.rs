@@ -1,5 +1,7 @@
 //! `overact export`: writes identified parameters into the file that a description was imported
-//! from.
+//! from, or a description's skeleton as a serial robot.
+
+mod serial;
 
 use super::import::Choices;
 use crate::{
@@ -17,7 +19,7 @@ use std::{
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
-#[command(group(clap::ArgGroup::new("original").required(true).args(["mjcf", "urdf"])))]
+#[command(group(clap::ArgGroup::new("original").required(true).args(["mjcf", "urdf", "serial"])))]
 pub(crate) struct Arguments {
     /// The MJCF from which the description was imported
     #[arg(long, value_name = "FILE")]
@@ -25,9 +27,20 @@ pub(crate) struct Arguments {
     /// The URDF from which the description was imported
     #[arg(long, value_name = "FILE")]
     urdf: Option<PathBuf>,
-    /// Standard parameters, written by `overact identify --parameters`
-    #[arg(long, value_name = "TOML")]
-    parameters: PathBuf,
+    /// Write the skeleton of a description as a serial robot, with the inertia of its loops lumped
+    /// into the bodies, and report the errors over the workspace
+    #[arg(long, value_name = "FORMAT", value_enum, requires = "file")]
+    serial: Option<SerialFormat>,
+    /// Description, for `--serial`
+    #[arg(value_name = "TOML", requires = "serial")]
+    file: Option<PathBuf>,
+    /// Standard parameters, written by `overact identify --parameters`; with `--serial` those of
+    /// `[experiment.parameters]` by default
+    #[arg(long, value_name = "TOML", required_unless_present = "serial")]
+    parameters: Option<PathBuf>,
+    /// With `--serial`: also write the states of the report as a table for `overact evaluate`
+    #[arg(long, value_name = "CSV", requires = "serial")]
+    states: Option<PathBuf>,
     /// The file to write instead of stdout; changed included files are written next to it
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -36,11 +49,21 @@ pub(crate) struct Arguments {
     choices: Choices,
 }
 
+/// Format of a serial robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum SerialFormat {
+    /// MuJoCo's format
+    Mjcf,
+    /// The format of ROS
+    Urdf,
+}
+
 impl Arguments {
     /// File of the robot.
     pub(super) fn file(&self) -> &Path {
-        let all = self.mjcf.as_deref().or(self.urdf.as_deref());
-        all.unwrap_or(Path::new("-"))
+        let all = [&self.mjcf, &self.urdf, &self.file].into_iter();
+        let mut given = all.filter_map(Option::as_deref);
+        given.next().unwrap_or(Path::new("-"))
     }
 }
 
@@ -48,13 +71,18 @@ impl Arguments {
 ///
 /// # Errors
 /// Errors of one of the files, or an output that cannot be written.
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let file = arguments.file();
+    if let Some(format) = arguments.serial {
+        return serial::run(arguments, file, format, as_json);
+    }
+    // Required by the parser of arguments.
+    let parameters = arguments.parameters.as_deref().unwrap_or(Path::new("-"));
     let output = output::file(arguments.output.as_ref());
     let outputs: Vec<&Path> = output.into_iter().collect();
-    check(&[file, &arguments.parameters], &outputs)?;
+    check(&[file, parameters], &outputs)?;
     let options = arguments.choices.options();
-    let exported = export(file, &arguments.parameters, &options).map_err(errors_of_files)?;
+    let exported = export(file, parameters, &options).map_err(errors_of_files)?;
     let is_mjcf = exported.format == overact_interchange::Format::Mjcf;
     if is_mjcf != arguments.mjcf.is_some() {
         let (is, key) = if is_mjcf {
