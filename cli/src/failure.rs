@@ -128,7 +128,7 @@ mod tests {
     use overact_codegen::diagnostic::{Diagnostics, Source};
 
     #[test]
-    fn only_arguments_that_do_not_go_together_are_a_usage_error() {
+    fn only_conflicting_arguments_exit_with_the_usage_code() {
         assert_eq!(
             Failure::from(Problem::new(Code::USAGE, "no column")).exit_code(),
             1
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn an_internal_error_has_a_code_of_its_own_wherever_it_comes_from() {
+    fn internal_errors_of_every_source_share_one_exit_code() {
         let error = || InternalError::new("lowering", "step 3 reads step 7").of_robot("DualV");
         let direct = Failure::Internal(error());
         let source = Source::new("dualv.toml", "");

@@ -62,7 +62,7 @@ mod tests {
     use overact_codegen::diagnostic::Code;
 
     #[test]
-    fn a_panic_is_an_internal_error_and_anything_else_stays_what_it_is() {
+    fn panics_become_internal_errors_and_other_results_are_unchanged() {
         let empty: &[f64] = &[];
         let panics = || Err(Problem::new(Code::USAGE, format!("{}", empty[3])).into());
         let failure = guarded("identify", "dualv.toml", panics).expect_err("a panic");

@@ -347,7 +347,7 @@ mod tests {
     use super::States;
 
     #[test]
-    fn csv_and_json_say_the_same() {
+    fn csv_and_json_states_are_equal() {
         let csv = "pose[1],pose[0],note,twist[0]\n2,1,x,3\n# c\n5,4,,nan\n";
         let json = r#"[{"pose":[1,2],"note":"x","twist":3},{"pose":[4,5],"twist":[1e999]}]"#;
         let csv = States::parse("a.csv".into(), csv).unwrap();
@@ -373,18 +373,21 @@ mod tests {
     }
 
     #[test]
-    fn a_name_that_stands_twice_is_located() {
+    fn duplicate_names_are_located() {
         let text = "[\n{\"pose\": [1, 2]},\n{\"pose\": [3, 4],\n\"pose\": [5, 6]}]";
         let problems = States::parse("s.json".into(), text).unwrap_err().problems();
         assert_eq!((problems.len(), problems[0].line), (1, Some(4)));
-        let said = &problems[0].message;
-        assert!(said.contains("`pose` occurs twice in a state"), "{said}");
-        let mended = text.replace(",\n\"pose\"", ",\n\"twist\"");
-        assert_eq!(States::parse("s.json".into(), &mended).unwrap().len(), 2);
+        let text_of_problem = &problems[0].message;
+        assert!(
+            text_of_problem.contains("`pose` occurs twice in a state"),
+            "{text_of_problem}"
+        );
+        let corrected = text.replace(",\n\"pose\"", ",\n\"twist\"");
+        assert_eq!(States::parse("s.json".into(), &corrected).unwrap().len(), 2);
     }
 
     #[test]
-    fn quantities_that_nobody_takes_are_named_in_json() {
+    fn unknown_json_quantities_are_reported_with_suggestions() {
         let message_of = |text: &str| {
             let states = States::parse("s.json".into(), text).unwrap();
             states.unknown(&["pose", "twist"])
@@ -405,7 +408,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_states_say_where() {
+    fn invalid_states_are_rejected_with_their_location() {
         let message = |text: &str, name| {
             let states = States::parse("s".into(), text).unwrap();
             states.get(0, name, 3).unwrap_err().message

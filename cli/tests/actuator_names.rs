@@ -15,7 +15,7 @@ fn bench(kept: &str) -> Bench {
 }
 
 #[test]
-fn what_is_printed_is_what_is_taken() {
+fn printed_actuator_names_are_accepted_as_input() {
     let bench = bench("[\"leg1_1\", \"leg2_1\", \"leg3_2\"]");
     let document = bench.json(&["inspect", "my.toml", "--effort", "none"]);
     let all = names(&document["actuator_names"]);
@@ -54,10 +54,10 @@ fn what_is_printed_is_what_is_taken() {
 }
 
 #[test]
-fn a_name_that_means_no_actuator_is_refused_alike() {
+fn unknown_actuator_names_get_the_same_error_in_all_commands() {
     let written = bench("[\"leg1_1\", \"leg2\", \"leg3_1\"]");
-    let said = written.bad(&["check", "my.toml"]);
-    assert!(said.contains("there is no actuator `leg2`"), "{said}");
+    let message = written.bad(&["check", "my.toml"]);
+    assert!(message.contains("there is no actuator `leg2`"), "{message}");
     let bench = bench("[\"leg1_1\", \"leg2_1\", \"leg3_1\"]");
     bench.write("states.csv", "pose[0],pose[1],pose[2]\n0,0,0\n");
     let function = [
@@ -67,7 +67,10 @@ fn a_name_that_means_no_actuator_is_refused_alike() {
         "--states",
         "states.csv",
     ];
-    let said = bench.bad(&[&function[..], &["--kept", "leg1_1,leg2,leg3_1"]].concat());
-    assert!(said.contains("there is no actuator `leg2`"), "{said}");
-    assert!(said.contains("the actuators are leg1_1, leg1_2"), "{said}");
+    let message = bench.bad(&[&function[..], &["--kept", "leg1_1,leg2,leg3_1"]].concat());
+    assert!(message.contains("there is no actuator `leg2`"), "{message}");
+    assert!(
+        message.contains("the actuators are leg1_1, leg1_2"),
+        "{message}"
+    );
 }

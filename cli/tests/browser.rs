@@ -185,7 +185,7 @@ fn reported() -> (Bench, String) {
 }
 
 /// Nothing is wider than the page, no table is clipped, and texts and lines have contrast.
-fn assert_fits(place: &str, seen: &Value) {
+fn assert_readable(place: &str, seen: &Value) {
     let overflow = number(&seen["overflow"]);
     assert!(overflow <= 0.0, "{place}: {overflow} px: {}", seen["wide"]);
     assert_eq!(list(&seen["wide"]), [Value::Null; 0], "{place}");
@@ -197,7 +197,7 @@ fn assert_fits(place: &str, seen: &Value) {
 }
 
 #[test]
-fn the_report_has_every_figure_at_every_width_and_in_both_colour_schemes() {
+fn report_figures_fit_all_widths_and_both_colour_schemes() {
     let Some(browser) = browser() else {
         return;
     };
@@ -207,7 +207,7 @@ fn the_report_has_every_figure_at_every_width_and_in_both_colour_schemes() {
         let place = format!("{width} px, {}", if dark { "dark" } else { "light" });
         assert_eq!(seen["width"], width, "{place}");
         assert_eq!(seen["dark"], dark, "{place}");
-        assert_fits(&place, &seen);
+        assert_readable(&place, &seen);
         for (id, words) in FIGURES {
             let figure = &seen["figures"][id];
             assert!(figure.is_object(), "{place}: {id} is missing");
@@ -217,7 +217,7 @@ fn the_report_has_every_figure_at_every_width_and_in_both_colour_schemes() {
 }
 
 #[test]
-fn paper_shows_every_column_and_what_is_closed_on_the_screen() {
+fn the_printed_report_shows_all_columns_and_collapsed_sections() {
     let Some(browser) = browser() else {
         return;
     };
@@ -226,7 +226,7 @@ fn paper_shows_every_column_and_what_is_closed_on_the_screen() {
         .replace("@media screen", "@media speech")
         .replace("@media print", "@media all");
     assert_ne!(printed, page);
-    assert_fits("paper", &view(&browser, &bench, &printed, PAPER, true));
+    assert_readable("paper", &view(&browser, &bench, &printed, PAPER, true));
 
     let file = bench.path("report.pdf");
     let task = format!("--print-to-pdf={}", file.display());

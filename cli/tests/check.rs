@@ -25,8 +25,8 @@ fn line(bench: &Bench, part: &str) -> usize {
 }
 
 /// `check` and `simulate` must give the same error for a description.
-fn said(bench: &Bench) -> String {
-    let said = bench.bad(&["check", "my.toml"]);
+fn check_message(bench: &Bench) -> String {
+    let check_message = bench.bad(&["check", "my.toml"]);
     let run = [
         "simulate",
         "my.toml",
@@ -35,13 +35,13 @@ fn said(bench: &Bench) -> String {
         "-o",
         "log.csv",
     ];
-    assert_eq!(bench.bad(&run), said);
+    assert_eq!(bench.bad(&run), check_message);
     assert_eq!(bench.files(), ["my.toml"]);
-    said
+    check_message
 }
 
 #[test]
-fn what_simulation_refuses_is_found_by_the_check() {
+fn check_rejects_experiments_that_simulation_would_reject() {
     let bench = changed(
         "serial-2r",
         &[
@@ -53,7 +53,7 @@ fn what_simulation_refuses_is_found_by_the_check() {
             ("harmonic = 1,", "harmonic = 100000,"),
         ],
     );
-    let said = said(&bench);
+    let check_message = check_message(&bench);
     let expected = [
         (
             "`bandwidth` makes the controlled robot unstable; lower `bandwidth`, or raise `sampling`, `derivative_cutoff` or `damping`",
@@ -70,26 +70,38 @@ fn what_simulation_refuses_is_found_by_the_check() {
         ("stay below half of `sampling`", "harmonic = 100000"),
     ];
     for (message, key) in expected {
-        assert!(said.contains(message), "{message}\nin\n{said}");
+        assert!(
+            check_message.contains(message),
+            "{message}\nin\n{check_message}"
+        );
         let place = format!("my.toml:{}:", line(&bench, key));
-        assert!(said.contains(&place), "{place} in\n{said}");
+        assert!(
+            check_message.contains(&place),
+            "{place} in\n{check_message}"
+        );
     }
     for name in ["_hz", "_s`", "runs[", "trajectory"] {
-        assert!(!said.contains(name), "{name} is no key:\n{said}");
+        assert!(
+            !check_message.contains(name),
+            "{name} is no key:\n{check_message}"
+        );
     }
 }
 
 #[test]
-fn runs_that_no_identification_takes_are_found() {
+fn check_rejects_runs_too_short_for_identification() {
     let bench = changed(
         "serial-2r",
         &[("[identification]", "[identification]\nskip_start = 1000000")],
     );
-    let said = bench.bad(&["check", "my.toml"]);
-    assert!(said.contains("the run `identification` has"), "{said}");
+    let check_message = bench.bad(&["check", "my.toml"]);
     assert!(
-        said.contains("the skipped samples of the identification need at least"),
-        "{said}"
+        check_message.contains("the run `identification` has"),
+        "{check_message}"
+    );
+    assert!(
+        check_message.contains("the skipped samples of the identification need at least"),
+        "{check_message}"
     );
 }
 
@@ -107,7 +119,7 @@ fn chain(joints: usize) -> String {
 }
 
 #[test]
-fn chains_of_many_joints_are_checked_in_seconds_up_to_a_stated_limit() {
+fn long_chains_are_checked_in_seconds_up_to_the_joint_limit() {
     let bench = Bench::new();
     bench.write("my.toml", &chain(80));
     let start = Instant::now();
@@ -115,15 +127,15 @@ fn chains_of_many_joints_are_checked_in_seconds_up_to_a_stated_limit() {
     // This takes less than a second of one core; deriving its model takes many minutes.
     assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
     bench.write("my.toml", &chain(201));
-    let said = bench.bad(&["check", "my.toml"]);
+    let check_message = bench.bad(&["check", "my.toml"]);
     assert!(
-        said.contains("the robot has 201 joints, more than 200"),
-        "{said}"
+        check_message.contains("the robot has 201 joints, more than 200"),
+        "{check_message}"
     );
 }
 
 #[test]
-fn filters_and_names_that_nothing_can_be_done_with_are_found() {
+fn unusable_filters_and_names_are_rejected_with_their_line() {
     let bench = Bench::new();
     let five_bar = std::fs::read_to_string(common::robot("five_bar.toml")).expect("a description");
     let check = |changes: &[(&str, &str)]| {
@@ -132,8 +144,8 @@ fn filters_and_names_that_nothing_can_be_done_with_are_found() {
             text.replacen(from, to, 1)
         });
         bench.write("my.toml", &text);
-        let said = bench.bad(&["check", "my.toml"]);
-        (said, line(&bench, changes[0].1))
+        let check_message = bench.bad(&["check", "my.toml"]);
+        (check_message, line(&bench, changes[0].1))
     };
     let cutoff = "filter_cutoff = \"100 Hz\"";
     for (changes, expected) in [
@@ -160,41 +172,41 @@ fn filters_and_names_that_nothing_can_be_done_with_are_found() {
             "the value is too large",
         ),
     ] {
-        let (said, line) = check(&changes);
-        assert!(said.contains(expected), "{said}");
+        let (check_message, line) = check(&changes);
+        assert!(check_message.contains(expected), "{check_message}");
         assert!(
-            said.contains(&format!("my.toml:{line}:")),
-            "{line} in {said}"
+            check_message.contains(&format!("my.toml:{line}:")),
+            "{line} in {check_message}"
         );
     }
 }
 
 #[test]
-fn bodies_that_nobody_can_build_are_found_as_identification_finds_them() {
+fn check_and_identify_reject_impossible_prior_bodies_alike() {
     let bench = Bench::with("serial-2r", |text| {
         format!(
             "{text}\n[prior.values]\nm_1 = \"1 kg\"\nmx_1 = \"5 kg m\"\nzz_1 = \"0.001 kg m^2\"\n"
         )
     });
-    let said = bench.bad(&["check", "my.toml"]);
+    let check_message = bench.bad(&["check", "my.toml"]);
     assert!(
-        said.contains("no body has the prior parameters of `m_1`"),
-        "{said}"
+        check_message.contains("no body has the prior parameters of `m_1`"),
+        "{check_message}"
     );
     let known = [
         line(&bench, "m_1 = \"1"),
         line(&bench, "mx_1 = \"5"),
         line(&bench, "zz_1 = \"0"),
     ];
-    let at = known.map(|line| said.contains(&format!("my.toml:{line}:")));
-    assert!(at.contains(&true), "{said}");
+    let at = known.map(|line| check_message.contains(&format!("my.toml:{line}:")));
+    assert!(at.contains(&true), "{check_message}");
     let refused = bench.bad(&["identify", "my.toml", "-o", "result.json"]);
-    assert_eq!(refused, said);
+    assert_eq!(refused, check_message);
     assert_eq!(bench.files(), ["my.toml"]);
 }
 
 #[test]
-fn what_may_not_be_meant_is_noted_with_its_line() {
+fn suspicious_values_are_noted_with_their_line() {
     let bench = changed(
         "serial-6r",
         &[
@@ -224,7 +236,7 @@ fn what_may_not_be_meant_is_noted_with_its_line() {
 }
 
 #[test]
-fn a_seed_is_for_virtual_runs() {
+fn a_seed_is_rejected_for_measured_logs() {
     let bench = Bench::with("serial-2r", str::to_owned);
     bench.write("log.csv", "time,q_1,q_2,tau_1,tau_2\n0,0,0,0,0\n");
     let outcome = bench.run(&["identify", "my.toml", "--data", "log.csv", "--seed", "3"]);
@@ -239,18 +251,18 @@ fn a_seed_is_for_virtual_runs() {
 }
 
 #[test]
-fn columns_that_a_log_lacks_are_told_with_the_line_that_names_them() {
+fn missing_log_columns_are_reported_with_their_description_line() {
     let bench = Bench::with("serial-2r", |text| {
         let names = "positions = [\"q1\", \"q2\"]\ntorques = [\"left\",\n\"right\"]\n";
         format!("{text}\n[data]\nsampling = \"1 kHz\"\n{names}")
     });
     bench.write("log.csv", "q1,q2,left,rigth\n0,0,0,0\n1,1,1,1\n");
-    let said = bench.bad(&["identify", "my.toml", "--data", "log.csv"]);
+    let check_message = bench.bad(&["identify", "my.toml", "--data", "log.csv"]);
     let line = line(&bench, "\"right\"]");
     let expected = format!(
         "did you mean `rigth` for `right`? The names are in the table [data], my.toml:{line}"
     );
-    assert!(said.contains(&expected), "{said}");
+    assert!(check_message.contains(&expected), "{check_message}");
 }
 
 /// A planar five-bar of two arms; the first turns about an axis with a given `alpha`.
@@ -277,17 +289,18 @@ fn five_bar(alpha: &str) -> String {
 }
 
 #[test]
-fn a_misfit_by_rounded_angles_is_a_length_with_digits() {
+fn misfits_from_rounded_angles_are_printed_with_enough_digits() {
     let bench = Bench::new();
     bench.write("my.toml", &five_bar("90 deg"));
     bench.good(&["check", "my.toml"]);
     for alpha in ["1.5708 rad", "1.570796 rad"] {
         bench.write("my.toml", &five_bar(alpha));
-        let said = bench.bad(&["check", "my.toml"]);
+        let check_message = bench.bad(&["check", "my.toml"]);
         assert!(
-            said.contains("misses its place") && said.contains("write angles exactly"),
-            "{said}"
+            check_message.contains("misses its place")
+                && check_message.contains("write angles exactly"),
+            "{check_message}"
         );
-        assert!(!said.contains("0.000 mm"), "{said}");
+        assert!(!check_message.contains("0.000 mm"), "{check_message}");
     }
 }

@@ -17,7 +17,7 @@ fn bench() -> (Bench, Value) {
 }
 
 #[test]
-fn parameters_go_from_identification_to_control_and_simulation() {
+fn consistent_parameters_are_used_for_control_and_simulation() {
     let (bench, document) = bench();
     let consistent = &document["consistent"][0];
     let error = |key: &str| number(&consistent[key]);
@@ -64,7 +64,7 @@ fn parameters_go_from_identification_to_control_and_simulation() {
 }
 
 #[test]
-fn a_file_of_parameters_that_does_not_fit_is_refused() {
+fn parameter_files_of_other_robots_are_rejected() {
     let (bench, _) = bench();
     let text = bench.read("parameters.toml");
     let output = |text: &str| {
@@ -99,12 +99,12 @@ fn a_file_of_parameters_that_does_not_fit_is_refused() {
     let wanted = format!("warning: negative.toml:{}: `fv_", place + 1);
     let generated = ["generate", "my.toml", "--effort", "none", "-o", "my.rs"];
     let read = [&generated[..], &["--parameters", "negative.toml"]].concat();
-    let said = bench.run(&read);
-    assert_eq!(said.code, Some(0), "{}", said.err);
+    let failed = bench.run(&read);
+    assert_eq!(failed.code, Some(0), "{}", failed.err);
     assert!(
-        said.err.contains(&wanted) && said.err.contains("= -1.5 is negative"),
+        failed.err.contains(&wanted) && failed.err.contains("= -1.5 is negative"),
         "{}",
-        said.err
+        failed.err
     );
     let outputs = bench.run(&["identify", "my.toml", "--parameters", "my.toml"]);
     assert_eq!(outputs.code, Some(2), "{}", outputs.err);

@@ -35,7 +35,7 @@ fn essential(document: &Value) -> Vec<&Value> {
 }
 
 #[test]
-fn logs_give_the_nine_parameters_of_table_2_and_the_papers_tables() {
+fn dualv_logs_reproduce_the_parameters_and_tables_of_the_paper() {
     let bench = described(by_tier(["1.5 s", "4 s"]), |text| {
         by_tier([sampled_half_as_often(&text), text])
     });
@@ -159,7 +159,7 @@ terms = [
 }
 
 #[test]
-fn a_crossed_singularity_of_the_kept_actuators_is_told() {
+fn a_crossed_singularity_of_the_kept_actuators_is_reported() {
     let bench = described(by_tier(["1.5 s", "3 s"]), crossing);
     let document = bench.json(&["identify", "my.toml"]);
     let verdict = |subject: &str| {

@@ -43,7 +43,7 @@ fn far(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
 }
 
 #[test]
-fn all_sources_of_motion_agree() {
+fn pose_joint_and_actuator_inputs_give_equal_results() {
     let bench = bench();
     let states = ["--states", "states.json"];
     let ask = |function: &str| values(&bench, &[&[function][..], &states].concat());
@@ -79,7 +79,7 @@ fn all_sources_of_motion_agree() {
 }
 
 #[test]
-fn csv_says_the_same_as_json() {
+fn csv_states_give_the_results_of_json_states() {
     let bench = bench();
     let csv = "pose[0],pose[1],pose[2],torques[0],torques[1],torques[2],torques[3],note\n\
         0.02,-0.03,0.1,1,2,3,4,a\n-0.05,0.04,-0.2,1,2,3,4,\n";
@@ -108,7 +108,7 @@ fn csv_says_the_same_as_json() {
 }
 
 #[test]
-fn columns_and_kept_actuators_are_chosen() {
+fn columns_and_kept_actuators_are_selectable() {
     let bench = bench();
     let dualv = robot("dualv.toml");
     let common = [
@@ -147,7 +147,7 @@ fn columns_and_kept_actuators_are_chosen() {
 }
 
 #[test]
-fn bad_states_are_told_of() {
+fn invalid_states_are_rejected_without_output() {
     let bench = bench();
     let planar = robot("planar_3rrr.toml");
     let bad = |function: &str, states: &str| {
@@ -208,7 +208,7 @@ fn bad_states_are_told_of() {
 }
 
 #[test]
-fn a_tree_takes_its_motion_under_any_name() {
+fn serial_robots_accept_joint_or_pose_names() {
     let bench = Bench::new();
     bench.write(
         "a.json",
@@ -231,7 +231,7 @@ fn a_tree_takes_its_motion_under_any_name() {
 }
 
 #[test]
-fn quaternions_of_any_length_are_one_rotation() {
+fn quaternions_are_normalised_and_zero_is_rejected() {
     let bench = Bench::new();
     let state = |q: [f64; 4]| json!({ "pose": [0.0, 0.0, 0.5, q[0], q[1], q[2], q[3]] });
     let states = [[0.8, 0.6, 0.0, 0.0], [0.08, 0.06, 0.0, 0.0]].map(state);
@@ -259,23 +259,23 @@ fn quaternions_of_any_length_are_one_rotation() {
 }
 
 #[test]
-fn what_would_be_no_number_is_refused() {
+fn singular_states_and_malformed_rows_are_rejected() {
     let bench = Bench::new();
     // The rods are in the plane of their joints, where the first angle of a joint is undetermined.
     bench.write("flat.json", r#"[{ "pose": [0, 0, 0, 1, 0, 0, 0] }]"#);
     let hexapod = robot("hexapod.toml");
-    let said = bench.bad(&["evaluate", &hexapod, "joints", "--states", "flat.json"]);
-    assert!(said.contains("leg `leg1` is singular here"), "{said}");
+    let message = bench.bad(&["evaluate", &hexapod, "joints", "--states", "flat.json"]);
+    assert!(message.contains("leg `leg1` is singular here"), "{message}");
     let fast = r#"[{ "pose": [0, 0, 0], "twist": [1e200, 0, 0], "acceleration": [0, 0, 0] }]"#;
     bench.write("fast.json", fast);
     let dualv = robot("dualv.toml");
     let ask = ["evaluate", &dualv, "idm_red_platform", "--states"];
-    let said = bench.bad(&[&ask[..], &["fast.json"]].concat());
-    assert!(said.contains("is too large for a number"), "{said}");
+    let message = bench.bad(&[&ask[..], &["fast.json"]].concat());
+    assert!(message.contains("is too large for a number"), "{message}");
     bench.write("more.csv", "pose[0],pose[1],pose[2]\n0,0,0\n0,0,0,1\n");
-    let said = bench.bad(&["evaluate", &dualv, "joints", "--states", "more.csv"]);
+    let message = bench.bad(&["evaluate", &dualv, "joints", "--states", "more.csv"]);
     assert!(
-        said.contains("more.csv:3") && said.contains("4 cells in a line, but 3 names"),
-        "{said}"
+        message.contains("more.csv:3") && message.contains("4 cells in a line, but 3 names"),
+        "{message}"
     );
 }

@@ -5,7 +5,7 @@ mod common;
 use common::Bench;
 
 #[test]
-fn runs_are_written_beside_the_description_that_they_are_for() {
+fn excite_writes_runs_and_keeps_the_description() {
     let bench = Bench::with("serial-2r", str::to_owned);
     let before = bench.read("my.toml");
     let table = bench.good(&[

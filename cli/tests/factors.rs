@@ -78,7 +78,7 @@ fn assert_same(a: &[f64], b: &[f64], tolerance: f64) {
 }
 
 #[test]
-fn sessions_of_factor_files_widen_intervals_as_those_of_logs() {
+fn sessions_widen_intervals_equally_for_factors_and_logs() {
     let bench = five_bar();
     for (seed, session) in [("1", "monday"), ("2", "tuesday")] {
         let (log, file) = (log(seed), format!("{seed}.parquet"));
@@ -104,7 +104,7 @@ fn sessions_of_factor_files_widen_intervals_as_those_of_logs() {
 }
 
 #[test]
-fn factor_files_give_what_one_pass_over_the_logs_gives() {
+fn factor_files_give_the_estimates_of_their_logs() {
     let bench = five_bar();
     let logs = bench.json(&["identify", "my.toml", "--data", "log_1.csv", "log_2.csv"]);
     factored(&bench, &[]);
@@ -137,7 +137,7 @@ fn factor_files_give_what_one_pass_over_the_logs_gives() {
 }
 
 #[test]
-fn nothing_is_counted_twice_and_nothing_bad_is_counted() {
+fn duplicate_and_damaged_factor_files_are_left_out() {
     let bench = five_bar();
     factored(&bench, &[]);
     let copy = |from: &str, to: &str, edit: &dyn Fn(&mut Vec<u8>)| {
@@ -201,7 +201,7 @@ fn nothing_is_counted_twice_and_nothing_bad_is_counted() {
 }
 
 #[test]
-fn a_file_in_which_any_byte_is_wrong_gives_no_other_numbers() {
+fn a_corrupted_factor_file_never_changes_estimates() {
     let bench = five_bar();
     bench.good(&["factor", "my.toml", "log_1.csv", "-o", "1.parquet"]);
     let good = values(
@@ -236,7 +236,7 @@ fn a_file_in_which_any_byte_is_wrong_gives_no_other_numbers() {
 }
 
 #[test]
-fn what_factors_can_not_give_is_refused_and_not_left_out_in_silence() {
+fn options_unavailable_for_factors_are_rejected() {
     let bench = five_bar();
     bench.good(&["factor", "my.toml", "log_1.csv", "-o", "1.parquet"]);
     for option in [
@@ -278,7 +278,7 @@ fn by_name(document: &Value) -> Vec<(String, f64, f64)> {
 }
 
 #[test]
-fn runs_with_payload_are_factored_and_tell_the_payload() {
+fn factors_of_payload_runs_identify_the_payload() {
     let bench = Bench::with("planar-3rrr", |text| {
         text.replace("duration = \"10 s\"", "duration = \"2 s\"")
     });
@@ -331,7 +331,7 @@ fn runs_with_payload_are_factored_and_tell_the_payload() {
 }
 
 #[test]
-fn a_run_of_another_description_is_told_with_what_differs() {
+fn factors_of_another_description_are_reported_with_differences() {
     let bench = five_bar();
     bench.good(&["factor", "my.toml", "log_1.csv", "-o", "1.parquet"]);
     let text = bench.read("my.toml");

@@ -24,7 +24,7 @@ fn five_bar() -> Bench {
 }
 
 #[test]
-fn logs_and_factors_are_of_the_same_runs() {
+fn fleet_logs_and_factors_describe_the_same_runs() {
     let bench = five_bar();
     let fleet = [
         "simulate", "my.toml", "--fleet", "3", "--days", "2", "--faults", "25",
@@ -63,7 +63,7 @@ fn logs_and_factors_are_of_the_same_runs() {
 }
 
 #[test]
-fn the_same_fleet_gives_the_same_bytes_and_another_seed_another_one() {
+fn fleet_files_depend_on_the_seed_only() {
     let bench = five_bar();
     let made = |folder: &str, more: &[&str]| {
         let own = [
@@ -87,7 +87,7 @@ fn the_same_fleet_gives_the_same_bytes_and_another_seed_another_one() {
 }
 
 #[test]
-fn what_can_not_be_is_refused_before_anything_is_written() {
+fn invalid_fleet_arguments_are_rejected_before_writing() {
     let bench = five_bar();
     fs::create_dir(bench.path("full")).expect("a folder");
     bench.write("full/something", "");

@@ -138,7 +138,7 @@ fn every_format_gives_the_same_estimates() {
 }
 
 #[test]
-fn a_format_that_is_not_built_in_is_named_with_its_feature() {
+fn an_unsupported_format_is_reported_with_its_feature() {
     for (name, columns, feature) in FEATURES {
         let built_in = match feature {
             "mcap" => cfg!(feature = "mcap"),

@@ -50,7 +50,7 @@ fn compiles(folder: &Path, name: &str) {
 }
 
 #[test]
-fn c_is_written_compared_and_compiles() {
+fn generated_c_is_written_checked_and_compiles() {
     let bench = bench("Arm");
     let written = bench.good(&quick(&["--lang", "c", "-o", "c"]));
     assert_eq!(written, "c/arm.h: written\nc/arm.c: written\n");
@@ -71,9 +71,12 @@ fn c_is_written_compared_and_compiles() {
     let same = bench.good(&quick(&["--lang", "c", "-o", "c", "--check"]));
     assert_eq!(same, "c/arm.h: up to date\nc/arm.c: up to date\n");
     bench.write("c/arm.c", "int x;\n");
-    let said = bench.bad(&quick(&["--lang", "c", "-o", "c", "--check"]));
-    assert!(said.contains("generate my.toml --lang c -o c`"), "{said}");
-    assert!(!said.contains("arm.h"), "{said}");
+    let printed = bench.bad(&quick(&["--lang", "c", "-o", "c", "--check"]));
+    assert!(
+        printed.contains("generate my.toml --lang c -o c`"),
+        "{printed}"
+    );
+    assert!(!printed.contains("arm.h"), "{printed}");
     assert_eq!(bench.read("c/arm.c"), "int x;\n");
     let document = bench.json(&quick(&["--lang", "c"]));
     assert_eq!(document["robots"][0]["files"][0]["name"], "arm.h");
@@ -82,7 +85,7 @@ fn c_is_written_compared_and_compiles() {
 
 /// Robot, legs, joints and constants with names of C's keywords and functions.
 #[test]
-fn names_that_c_has_are_no_names_of_values() {
+fn reserved_c_names_are_not_used_for_values() {
     let text = r#"
 name = "Math"
 summary = "Comments end */ here /* and trigraphs ??/ do not count \\"
@@ -134,7 +137,7 @@ shape = "case"
 }
 
 #[test]
-fn c_never_replaces_what_it_reads_and_needs_a_folder() {
+fn c_output_needs_a_folder_and_never_overwrites_inputs() {
     let bench = bench("Arm");
     let text = bench.read("my.toml");
     bench.write("arm.c", &text);
@@ -150,8 +153,8 @@ fn c_never_replaces_what_it_reads_and_needs_a_folder() {
         assert!(outcome.err.contains("FOLDER"), "{}", outcome.err);
     }
     bench.write("file", "");
-    let said = bench.bad(&quick(&["--lang", "c", "-o", "file"]));
-    assert!(said.contains("file"), "{said}");
+    let printed = bench.bad(&quick(&["--lang", "c", "-o", "file"]));
+    assert!(printed.contains("file"), "{printed}");
     // Two robots whose names differ in case only have the same prefix.
     let other = text.replace("name = \"Arm\"", "name = \"ARm\"");
     bench.write("other.toml", &other);
@@ -166,13 +169,13 @@ fn c_never_replaces_what_it_reads_and_needs_a_folder() {
         "-o",
         "c",
     ];
-    let said = bench.bad(&both);
-    assert!(said.contains("capitals"), "{said}");
+    let printed = bench.bad(&both);
+    assert!(printed.contains("capitals"), "{printed}");
     assert!(!bench.path("c").exists());
 }
 
 #[test]
-fn only_what_is_chosen_is_written_and_what_it_calls() {
+fn selected_functions_and_their_dependencies_are_generated() {
     let bench = Bench::new();
     let dualv = robot("dualv.toml");
     let generate = |more: &[&str]| {
@@ -249,21 +252,24 @@ fn only_what_is_chosen_is_written_and_what_it_calls() {
 }
 
 #[test]
-fn functions_that_are_not_there_are_told_with_a_way_out() {
+fn unavailable_functions_are_reported_with_alternatives() {
     let bench = bench("Arm");
-    let said = bench.bad(&quick(&["--functions", "inverse_dynamic,mass_matrix,bais"]));
-    assert!(said.contains("did you mean `inverse_dynamics`?"), "{said}");
-    assert!(said.contains("did you mean `bias`?"), "{said}");
+    let printed = bench.bad(&quick(&["--functions", "inverse_dynamic,mass_matrix,bais"]));
+    assert!(
+        printed.contains("did you mean `inverse_dynamics`?"),
+        "{printed}"
+    );
+    assert!(printed.contains("did you mean `bias`?"), "{printed}");
     let outcome = bench.run(&quick(&["--columns", "bases"]));
     assert_eq!(outcome.code, Some(2), "{}", outcome.err);
     assert!(outcome.err.contains("standard, base"), "{}", outcome.err);
-    let said = bench.bad(&quick(&[
+    let printed = bench.bad(&quick(&[
         "--functions",
         "bias_base",
         "--columns",
         "standard",
     ]));
-    assert!(said.contains("ask for `bias`"), "{said}");
+    assert!(printed.contains("ask for `bias`"), "{printed}");
     // Meaningless options are usage errors.
     for (options, words) in [
         (
@@ -276,7 +282,7 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
         assert!(matches!(outcome.code, Some(1 | 2)), "{}", outcome.err);
         assert!(outcome.err.contains(words), "{}", outcome.err);
     }
-    let said = bench.bad(&quick(&[
+    let printed = bench.bad(&quick(&[
         "--functions",
         "null_space,jacobian,idm_red_payload",
     ]));
@@ -285,7 +291,7 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
         "has no function `jacobian`: only robots with a platform have it",
         "has no function `idm_red_payload`: only robots with a `[platform.payload]` have it",
     ] {
-        assert!(said.contains(words), "no `{words}` in\n{said}");
+        assert!(printed.contains(words), "no `{words}` in\n{printed}");
     }
     let joint = |j: usize| {
         let symbols = ["zz", "mx", "my", "m", "ia", "fv", "fs", "off"];
@@ -302,23 +308,23 @@ fn functions_that_are_not_there_are_told_with_a_way_out() {
         "--parameters",
         "parameters.toml",
     ];
-    let said = bench.bad(&quick(&shown_output));
+    let printed = bench.bad(&quick(&shown_output));
     assert!(
-        said.contains("has no function `idm_red_platform`: with known parameters"),
-        "{said}"
+        printed.contains("has no function `idm_red_platform`: with known parameters"),
+        "{printed}"
     );
-    let said = bench.bad(&quick(&[
+    let printed = bench.bad(&quick(&[
         "--parameters",
         "parameters.toml",
         "--columns",
         "base",
     ]));
-    assert!(said.contains("leave out `columns`"), "{said}");
+    assert!(printed.contains("leave out `columns`"), "{printed}");
 }
 
 /// Programs in the documents compile and print the shown output.
 #[test]
-fn the_programs_of_the_documents_run() {
+fn documented_programs_print_the_documented_output() {
     let shown = |text: &str| {
         text.split_once("```text\n")
             .map(|(_, rest)| rest.to_owned())
@@ -330,13 +336,13 @@ fn the_programs_of_the_documents_run() {
         let text = fs::read_to_string(text).expect("the document");
         let (_, rest) = text.split_once("```c\n").expect("a program");
         let (program, _) = rest.split_once("```").expect("its end");
-        let Some(said) = compiled_and_run(name, program) else {
+        let Some(printed) = compiled_and_run(name, program) else {
             eprintln!("skipped: there is no gcc");
             return;
         };
         match shown(&text) {
-            Some(shown) => assert!(shown.starts_with(&said), "{said}"),
-            None => assert!(said.starts_with("zz_1_leg1 in row x: "), "{said}"),
+            Some(shown) => assert!(shown.starts_with(&printed), "{printed}"),
+            None => assert!(printed.starts_with("zz_1_leg1 in row x: "), "{printed}"),
         }
     }
 }
@@ -355,17 +361,17 @@ fn compiled_and_run(name: &str, program: &str) -> Option<String> {
     gcc.args(warnings)
         .args(["-o", "main", "main.c", &source, "-lm"]);
     let done = gcc.current_dir(bench.path(".")).output().ok()?;
-    let said = String::from_utf8_lossy(&done.stderr);
-    assert!(done.status.success(), "{said}");
-    let said = Command::new(bench.path("main"))
+    let printed = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{printed}");
+    let printed = Command::new(bench.path("main"))
         .output()
         .expect("the program");
-    Some(String::from_utf8_lossy(&said.stdout).into_owned())
+    Some(String::from_utf8_lossy(&printed.stdout).into_owned())
 }
 
 /// The C++ controller example generates, builds and passes its own check.
 #[test]
-fn the_example_of_a_controller_builds_and_passes() {
+fn the_cpp_controller_example_builds_and_passes() {
     let is_there = |program: &str| Command::new(program).arg("--version").output().is_ok();
     if !is_there("cmake") || !is_there("c++") {
         eprintln!("skipped: there is no cmake or no C++ compiler");
@@ -379,10 +385,10 @@ fn the_example_of_a_controller_builds_and_passes() {
             .args(words)
             .output()
             .expect("a program");
-        let said = [done.stdout, done.stderr].concat();
-        let said = String::from_utf8_lossy(&said).into_owned();
-        assert!(done.status.success(), "{program} {words:?}:\n{said}");
-        said
+        let printed = [done.stdout, done.stderr].concat();
+        let printed = String::from_utf8_lossy(&printed).into_owned();
+        assert!(done.status.success(), "{program} {words:?}:\n{printed}");
+        printed
     };
     let (example, build) = (example.display().to_string(), build.display().to_string());
     let overact = format!("-DOVERACT={}", env!("CARGO_BIN_EXE_overact"));
@@ -397,7 +403,7 @@ fn the_example_of_a_controller_builds_and_passes() {
 }
 
 #[test]
-fn online_estimation_comes_with_c() {
+fn online_estimation_is_generated_for_c_only() {
     let bench = Bench::new();
     bench.good(&["new", "serial-2r", "my.toml"]);
     let arguments = [

@@ -14,7 +14,7 @@ fn serial() -> Bench {
 }
 
 #[test]
-fn a_result_that_is_not_to_be_used_fails_where_that_is_asked_for() {
+fn strict_identification_fails_for_unusable_results() {
     let bench = serial();
     bench.good(&["simulate", "my.toml", "-o", "log.csv"]);
     let log = bench.read("log_identification.csv");
@@ -34,7 +34,7 @@ fn a_result_that_is_not_to_be_used_fails_where_that_is_asked_for() {
 }
 
 #[test]
-fn basic_checks_give_the_same_estimates_and_seek_no_faults() {
+fn basic_checks_keep_estimates_and_skip_fault_hypotheses() {
     let bench = serial();
     bench.good(&["simulate", "my.toml", "-o", "log.csv"]);
     let identify = |scope: &str| -> Value {
@@ -70,7 +70,7 @@ fn basic_checks_give_the_same_estimates_and_seek_no_faults() {
 }
 
 #[test]
-fn a_joint_that_never_moves_is_locked_or_has_a_dead_encoder() {
+fn a_constant_position_is_reported_as_locked_or_dead_encoder() {
     let bench = serial();
     bench.good(&["simulate", "my.toml", "-o", "log.csv"]);
     let log = bench.read("log_identification.csv");
@@ -92,7 +92,7 @@ fn a_joint_that_never_moves_is_locked_or_has_a_dead_encoder() {
 }
 
 #[test]
-fn sessions_of_logs_are_in_the_result() {
+fn the_result_lists_sessions_of_logs() {
     let bench = serial();
     bench.good(&["simulate", "my.toml", "-o", "log.csv"]);
     let logs = ["log_identification.csv", "log_validation.csv"];
@@ -122,7 +122,7 @@ fn sessions_of_logs_are_in_the_result() {
 }
 
 #[test]
-fn simulated_logs_give_what_the_virtual_experiment_gives() {
+fn simulated_logs_give_the_estimates_of_the_virtual_experiment() {
     let bench = serial();
     let made = bench.run(&["simulate", "my.toml", "-o", "log.csv"]);
     assert_eq!(
@@ -170,7 +170,7 @@ fn simulated_logs_give_what_the_virtual_experiment_gives() {
 }
 
 #[test]
-fn the_document_has_its_keys() {
+fn the_json_result_has_its_documented_keys() {
     let bench = Bench::with("planar-4rrr", |text| {
         text.replace("duration = \"4 s\"", "duration = \"2 s\"")
     });
@@ -251,7 +251,7 @@ fn partitions_are_ranked() {
 }
 
 #[test]
-fn bad_logs_are_told_of() {
+fn invalid_logs_are_rejected_without_output() {
     let bench = serial();
     let bad = |log: &str| {
         bench.write("log.csv", log);
@@ -295,7 +295,7 @@ fn bad_logs_are_told_of() {
 }
 
 #[test]
-fn bad_experiments_are_told_of() {
+fn invalid_experiments_are_rejected_without_output() {
     let bench = serial();
     bench.write("log_identification.csv", "old");
     let text = bench.bad(&[
@@ -350,7 +350,7 @@ fn bad_experiments_are_told_of() {
 
 /// Full tier only; every tier tests the same digits through the library, and logs of a robot.
 #[test]
-fn emps_has_the_published_digits() {
+fn emps_logs_give_the_published_digits() {
     if !is_full() {
         return;
     }
@@ -431,7 +431,7 @@ fn emps_has_the_published_digits() {
 }
 
 #[test]
-fn a_replay_has_estimates_over_time() {
+fn online_replay_reports_estimates_over_time() {
     let bench = serial();
     let run = |arguments: &[&str]| {
         let all = [&["identify", "my.toml", "--seed", "3"], arguments].concat();

@@ -22,7 +22,7 @@ fn imported(name: &str, text: &str, options: &[&str]) -> (Bench, String) {
 }
 
 #[test]
-fn moments_that_no_body_has_are_no_prior() {
+fn impossible_moments_of_inertia_are_left_out_of_the_prior() {
     // A rod of 2 kg with its centre 0.15 m from the frame's origin has more than 0.02 kg m² about
     // it, a crank of 1 kg at 0.1 m more than 0.003 kg m².
     let lengths = ["--value", "L1=0.2,D3=0.5,L2=0.52,L3=0.25"];
@@ -49,7 +49,7 @@ fn moments_that_no_body_has_are_no_prior() {
 }
 
 #[test]
-fn masses_in_a_point_and_plates_are_no_prior() {
+fn point_masses_and_plates_are_left_out_of_the_prior() {
     let arm = model("arm.urdf");
     let given =
         r#"<inertia ixx="0.02" ixy="0.001" ixz="-0.002" iyy="0.025" iyz="0.0005" izz="0.018"/>"#;
@@ -122,7 +122,7 @@ fn head_on_rods() -> String {
 ///
 /// Joint limits must hold for the description's motion.
 #[test]
-fn runs_of_a_head_on_rods_keep_the_limits_of_its_motors() {
+fn runs_keep_the_joint_limits_of_a_spinning_rod_skeleton() {
     let (bench, text) = imported("head.xml", &head_on_rods(), &[]);
     assert!(
         text.contains("\"neck_3\""),
@@ -215,7 +215,7 @@ fn are_same(a: &[f64], b: &[f64]) {
 }
 
 #[test]
-fn an_arm_of_sdformat_takes_the_torques_of_that_of_urdf() {
+fn sdformat_and_urdf_arms_have_equal_torques() {
     let inputs = ["joints", "joint_velocities", "joint_accelerations"];
     let urdf = torques("arm.urdf", &model("arm.urdf"), &[], inputs);
     let sdf = model("arm.sdf");
@@ -228,7 +228,7 @@ fn an_arm_of_sdformat_takes_the_torques_of_that_of_urdf() {
 }
 
 #[test]
-fn motors_at_tendons_take_the_torques_of_mujoco() {
+fn tendon_motors_have_the_torques_of_mujoco() {
     let robot = "<mujoco model='row'><compiler angle='radian'/><worldbody>\n\
         <body><inertial pos='0.05 0 0.01' mass='2' diaginertia='0.1 0.1 0.1'/><joint name='j1' axis='0 1 0' armature='0.1' damping='0.4'/>\n\
         <body pos='0.3 0 0'><inertial pos='0.05 0 0' mass='3' diaginertia='0.1 0.1 0.1'/><joint name='j2' axis='0 1 0'/>\n\
@@ -285,7 +285,7 @@ fn cut_five_bar() -> String {
 }
 
 #[test]
-fn a_loop_of_joints_takes_the_torques_of_one_that_is_cut() {
+fn joint_closed_and_cut_loops_have_equal_torques() {
     let motors = "left_motor,right_motor";
     let options = ["--actuated", motors, "--coordinates", motors];
     let inputs = ["pose", "twist", "acceleration"];
@@ -299,7 +299,7 @@ fn a_loop_of_joints_takes_the_torques_of_one_that_is_cut() {
 /// For slightly changed lengths, from which the columns of length errors are computed, Newton's
 /// method is needed.
 #[test]
-fn an_imported_loop_in_space_is_identified() {
+fn imported_spatial_loops_are_identified() {
     let names = ["5bar_linkage_iso6d", "5bar_linkage_iso3d"];
     for name in by_tier([&names[..1], &names]) {
         let path = format!("models/example-parallel-robots/{name}/robot.urdf");
@@ -308,8 +308,8 @@ fn an_imported_loop_in_space_is_identified() {
         };
         let bench = Bench::new();
         bench.good(&["import", &path, "-o", "my.toml"]);
-        let said = bench.good(&["identify", "my.toml"]);
-        assert!(said.contains("zz_"), "{said}");
+        let message = bench.good(&["identify", "my.toml"]);
+        assert!(message.contains("zz_"), "{message}");
     }
 }
 
@@ -329,7 +329,7 @@ fn row(count: usize, more: &str) -> String {
 }
 
 #[test]
-fn a_description_that_check_refuses_is_not_written() {
+fn a_description_rejected_by_check_is_not_written() {
     let crank = "<mujoco><worldbody><body><joint name='crank' axis='0 1 0'/>\
         <inertial pos='0.1 0 0' mass='1' diaginertia='0.01 0.01 0.01'/>\n\
         <body name='slider' pos='0.2 0 0'><joint name='rail' type='slide' axis='1 0 0'/>\
@@ -385,14 +385,17 @@ fn a_description_that_check_refuses_is_not_written() {
         };
         bench.write(name, &text);
         let arguments = ["import", name, "-o", "my.toml"];
-        let said = bench.bad(&[&arguments, options].concat());
-        assert!(said.contains(expected) && said.contains(name), "{said}");
+        let message = bench.bad(&[&arguments, options].concat());
+        assert!(
+            message.contains(expected) && message.contains(name),
+            "{message}"
+        );
         assert_eq!(bench.files(), [name]);
     }
 }
 
 #[test]
-fn axes_of_any_length_are_directions() {
+fn axes_are_normalised() {
     let bench = Bench::new();
     let import = |axis: &str| {
         let text = row(2, "").replacen("xyz='0 1 0'", &format!("xyz='{axis}'"), 1);
@@ -412,7 +415,7 @@ const INCOMPLETE: &str = "<mujoco model='arm'><compiler angle='radian'/><option 
     <actuator><motor joint='j'/></actuator></mujoco>";
 
 #[test]
-fn what_is_not_used_is_reported_on_stderr_and_in_the_head() {
+fn unused_content_is_reported_on_stderr_and_in_the_file_header() {
     let bench = Bench::new();
     bench.write("arm.xml", INCOMPLETE);
     let outcome = bench.run(&["import", "arm.xml", "-o", "my.toml"]);
@@ -437,7 +440,7 @@ fn what_is_not_used_is_reported_on_stderr_and_in_the_head() {
 }
 
 #[test]
-fn the_json_of_an_import_lists_what_became_of_the_file() {
+fn the_json_of_an_import_lists_the_treatment_of_each_element() {
     let bench = Bench::new();
     bench.write("arm.xml", INCOMPLETE);
     let document = bench.json(&["import", "arm.xml", "-o", "my.toml"]);
@@ -445,10 +448,10 @@ fn the_json_of_an_import_lists_what_became_of_the_file() {
     assert_eq!(document["description"], bench.read("my.toml"));
     let has = |list: &str, element: &str, attribute: Option<&str>| {
         let all = document[list].as_array().expect("a list");
-        let is_meant = |entry: &&serde_json::Value| {
+        let is_expected = |entry: &&serde_json::Value| {
             entry["element"] == element && entry["attribute"].as_str() == attribute
         };
-        let entry = all.iter().find(is_meant).expect("an entry");
+        let entry = all.iter().find(is_expected).expect("an entry");
         assert!(
             entry["line"].is_u64() && entry["reason"].is_string(),
             "{entry}"

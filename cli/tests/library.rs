@@ -18,7 +18,7 @@ fn file(name: &str) -> String {
 }
 
 #[test]
-fn all_are_checked() {
+fn all_robots_pass_check() {
     let robots = robots();
     let files: Vec<String> = robots.iter().map(|name| file(name)).collect();
     let mut arguments = vec!["check"];
@@ -38,7 +38,7 @@ fn all_are_checked() {
 }
 
 #[test]
-fn all_are_inspected_drawn_and_evaluated() {
+fn all_robots_are_inspected_drawn_and_evaluated() {
     let bench = Bench::new();
     for name in robots_of_the_tier() {
         let document = bench.json(&[
@@ -61,7 +61,7 @@ fn all_are_inspected_drawn_and_evaluated() {
 }
 
 #[test]
-fn all_have_a_drawing_and_no_drawing_is_left_over() {
+fn drawings_and_robots_correspond() {
     let drawings = fs::read_dir(drawings()).expect("the drawings").count();
     assert_eq!(drawings, robots().len());
     for name in robots() {
@@ -208,7 +208,7 @@ fn assert_friction(name: &str, parameters: &[&str], model: &[f64], rates: &[f64]
 
 /// Several modules at once; `overact-tests` compares them with `generated/`.
 #[test]
-fn modules_are_generated() {
+fn all_modules_are_generated() {
     let bench = Bench::new();
     let robots = robots_of_the_tier();
     let files: Vec<String> = robots.iter().map(|name| file(name)).collect();
@@ -277,7 +277,7 @@ fn robots_of_the_tier() -> Vec<String> {
 }
 
 #[test]
-fn all_are_simulated() {
+fn all_robots_are_simulated() {
     let bench = Bench::new();
     for name in robots_of_the_tier() {
         let text = shortened(&name, "0.25 s");
@@ -322,7 +322,7 @@ fn numbers(line: &str) -> Vec<f64> {
 /// At least 95 % of the base parameters are within three honest standard deviations, for each robot
 /// and model.
 #[test]
-fn all_are_identified() {
+fn all_robots_are_identified() {
     let bench = Bench::new();
     let (mut all, mut within) = (0, 0);
     for name in robots_of_the_tier() {
@@ -353,7 +353,7 @@ fn all_are_identified() {
             let error = number(&estimate["relative_error_percent"]);
             assert!(error < 10.0, "{name}: {error} %");
             let parameters = list(&estimate["parameters"]);
-            let inside = honest(&name, parameters);
+            let inside = count_within_three_deviations(&name, parameters);
             println!("{name}: {inside} of {}", parameters.len());
             assert!(20 * inside >= 19 * parameters.len(), "{name}: {inside}");
             within += inside;
@@ -368,7 +368,7 @@ fn all_are_identified() {
 ///
 /// `evaluate` gives the same torques as for these numbers as inputs.
 #[test]
-fn all_read_their_own_parameters() {
+fn all_robots_read_their_identified_parameters() {
     let bench = Bench::new();
     let all = robots_of_the_tier();
     // Every fourth robot, because this takes most of the library's test time.
@@ -439,7 +439,7 @@ fn all_read_their_own_parameters() {
 ///
 /// Some must be well determined and near the truth, so that wide intervals cannot compensate for
 /// bad values.
-fn honest(name: &str, parameters: &[Value]) -> usize {
+fn count_within_three_deviations(name: &str, parameters: &[Value]) -> usize {
     let (mut within, mut determined) = (0, 0);
     for parameter in parameters {
         let of = |key: &str| number(&parameter[key]);

@@ -38,7 +38,7 @@ fn out(output: &Output) -> String {
 }
 
 #[test]
-fn a_dash_is_standard_input_and_output() {
+fn a_dash_means_standard_input_or_output() {
     let bench = Bench::new();
     let emps = robot("emps.toml");
     let text = fs::read(&emps).expect("the robot");
@@ -91,7 +91,7 @@ fn a_dash_is_standard_input_and_output() {
 }
 
 #[test]
-fn every_error_has_a_code_that_is_explained() {
+fn error_codes_are_printed_and_explained() {
     let bench = Bench::with("planar-4rrr", |text| {
         text.replacen("actuated", "actuatd", 1)
     });
@@ -151,7 +151,7 @@ fn every_error_has_a_code_that_is_explained() {
 }
 
 #[test]
-fn quiet_leaves_errors_alone_on_standard_error() {
+fn quiet_suppresses_notes_but_not_errors() {
     let redundant = |text: &str| {
         let lines = text.lines().filter(|line| !line.starts_with("redundancy"));
         lines.map(|line| format!("{line}\n")).collect()
@@ -172,7 +172,7 @@ fn quiet_leaves_errors_alone_on_standard_error() {
 }
 
 #[test]
-fn shells_and_man_are_served() {
+fn completions_and_manual_pages_are_generated() {
     let bench = Bench::new();
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
         let text = bench.good(&["completions", shell]);
@@ -203,7 +203,7 @@ fn shells_and_man_are_served() {
 
 #[cfg(unix)]
 #[test]
-fn a_named_pipe_is_read_as_a_log() {
+fn a_log_is_read_from_a_named_pipe() {
     let bench = Bench::new();
     bench.good(&["new", "serial-2r", "my.toml"]);
     let run = ["simulate", "my.toml", "--run", "identification", "-o"];
@@ -227,7 +227,7 @@ fn a_named_pipe_is_read_as_a_log() {
 /// An unread pipe keeps the command waiting between temporary files and their final names.
 #[cfg(unix)]
 #[test]
-fn a_signal_leaves_no_temporary_file() {
+fn signals_remove_temporary_files() {
     use std::{os::unix::process::ExitStatusExt, thread::sleep, time::Duration};
     for (name, number) in [("HUP", 1), ("INT", 2), ("TERM", 15)] {
         let bench = Bench::new();
@@ -267,7 +267,7 @@ fn a_signal_leaves_no_temporary_file() {
 }
 
 #[test]
-fn warnings_are_told_on_standard_error_where_the_result_goes_to_a_file() {
+fn warnings_go_to_stderr_if_results_go_to_a_file() {
     let bench = Bench::with("serial-2r", str::to_owned);
     bench.good(&[
         "simulate",

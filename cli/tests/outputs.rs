@@ -39,7 +39,7 @@ fn refused(bench: &Bench, arguments: &[&str], words: &str) {
 }
 
 #[test]
-fn an_output_is_never_an_input() {
+fn outputs_that_are_inputs_are_rejected() {
     let bench = bench();
     let cases: [&[&str]; 18] = [
         &["excite", "my.toml", "-o", "my.toml"],
@@ -142,7 +142,7 @@ fn an_output_is_never_an_input() {
 
 #[cfg(unix)]
 #[test]
-fn links_lead_to_the_same_file() {
+fn outputs_that_link_to_inputs_are_rejected() {
     use std::os::unix::fs::symlink;
     let bench = bench();
     symlink("log.csv", bench.path("link.csv")).expect("a link");
@@ -163,7 +163,7 @@ fn links_lead_to_the_same_file() {
 }
 
 #[test]
-fn two_results_are_two_files() {
+fn two_results_in_one_file_are_rejected() {
     let bench = bench();
     let cases: [&[&str]; 4] = [
         &[
@@ -224,10 +224,10 @@ fn a_read_only_file_is_not_replaced() {
         ],
         &["identify", "my.toml", "--data", "log.csv", "-o", "kept"],
     ] {
-        let said = bench.bad(arguments);
+        let message = bench.bad(arguments);
         assert!(
-            said.contains("the file can't be written: it is read-only"),
-            "{said}"
+            message.contains("the file can't be written: it is read-only"),
+            "{message}"
         );
         assert_eq!(bench.read("kept"), "kept");
     }

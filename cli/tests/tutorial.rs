@@ -146,7 +146,7 @@ fn follow(bench: &Bench, text: &str, files: &Files<'_>) -> usize {
 }
 
 #[test]
-fn answers_that_are_not_to_be_trusted_are_those_that_are_shown() {
+fn the_untrusted_results_page_shows_the_actual_output() {
     let text = fs::read_to_string(docs().join("untrusted.md")).expect("the page");
     let files = Files {
         toml: "rrr.toml",
@@ -156,7 +156,7 @@ fn answers_that_are_not_to_be_trusted_are_those_that_are_shown() {
 }
 
 #[test]
-fn the_tutorial_does_what_it_says() {
+fn the_parallel_robot_tutorial_shows_the_actual_output() {
     // Its robot is derived and identified several times.
     if !overact_tier::is_full() {
         return;
@@ -180,7 +180,7 @@ fn the_tutorial_does_what_it_says() {
 }
 
 #[test]
-fn the_ankle_is_imported_identified_and_exported_as_shown() {
+fn the_ankle_tutorial_shows_the_actual_output() {
     // It is identified four times.
     if !overact_tier::is_full() {
         return;
@@ -194,7 +194,7 @@ fn the_ankle_is_imported_identified_and_exported_as_shown() {
 }
 
 #[test]
-fn the_counterbalance_is_identified_as_shown() {
+fn the_counterbalance_tutorial_shows_the_actual_output() {
     // The arm is identified twice.
     if !overact_tier::is_full() {
         return;
@@ -208,7 +208,7 @@ fn the_counterbalance_is_identified_as_shown() {
 }
 
 #[test]
-fn the_arm_is_imported_and_identified_from_a_log_as_shown() {
+fn the_arm_tutorial_shows_the_actual_output() {
     // It is identified three times.
     if !overact_tier::is_full() {
         return;
@@ -242,7 +242,7 @@ fn ur10e_log(name: &str) -> PathBuf {
 }
 
 #[test]
-fn the_measured_arm_is_identified_as_shown() {
+fn the_measured_arm_tutorial_shows_the_actual_output() {
     // It is identified twice.
     if !overact_tier::is_full() {
         return;
@@ -270,7 +270,7 @@ fn the_measured_arm_is_identified_as_shown() {
 }
 
 #[test]
-fn the_controller_is_generated_compiled_and_run_as_shown() {
+fn the_controller_tutorial_shows_the_actual_output() {
     // It is identified, generated and compiled.
     if !overact_tier::is_full() {
         return;
@@ -287,7 +287,7 @@ fn the_controller_is_generated_compiled_and_run_as_shown() {
 }
 
 #[test]
-fn the_commands_of_the_readme_run() {
+fn readme_commands_run_with_the_described_results() {
     // The first one simulates and identifies.
     if !overact_tier::is_full() {
         return;
@@ -316,13 +316,13 @@ fn the_commands_of_the_readme_run() {
 }
 
 #[test]
-fn a_command_has_continuation_lines() {
+fn continuation_lines_belong_to_their_command() {
     let (command, shown) = command_and_output("echo 'a\n> b'\na\nb\n");
     assert_eq!((command.as_str(), shown), ("echo 'a\nb'", vec!["a", "b"]));
 }
 
 #[test]
-fn lines_are_compared_by_their_numbers() {
+fn shown_lines_are_compared_to_their_printed_precision() {
     assert!(is_same("a 1.00, b", "a  1.001, b") && !is_same("a 1.0", "a 1.1"));
     assert!(!is_same("a 1.0 m", "a 1.0"));
     assert!(matches(&["a", "…", "d"], &["a", "b", "c", "d"]));

@@ -70,7 +70,7 @@ mod tests {
     use super::Runtime;
 
     #[test]
-    fn paths_are_told_from_other_texts() {
+    fn runtime_paths_are_validated() {
         for path in ["::overact", "overact", "crate::vendor::overact", " ::a::b "] {
             assert_eq!(Runtime::new(path).expect("a path").path(), path.trim());
         }

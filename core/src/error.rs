@@ -272,7 +272,7 @@ mod tests {
     use std::string::ToString;
 
     #[test]
-    fn a_determinant_of_zero_is_not_infinitely_smaller() {
+    fn zero_determinants_are_printed_as_zero() {
         let message = |condition| {
             Error::SingularLeg {
                 leg: "left",

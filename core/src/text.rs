@@ -18,7 +18,7 @@ mod tests {
     use super::is_invisible;
 
     #[test]
-    fn what_has_a_glyph_is_visible() {
+    fn only_characters_with_a_glyph_are_visible() {
         for c in "α², Γ¹ — Gautier’s 6-UPS \u{a0}م中".chars() {
             assert!(!is_invisible(c), "{c:?}");
         }

@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn decimal_radians_add_up() {
+    fn decimal_radians_are_additive() {
         let point = |text| Angle::radians(Ratio::decimal(text).unwrap()).circle_point();
         assert_eq!(point("0.1") * point("0.2"), point("0.3"));
         assert_eq!(point("-1.25") * point("1.25"), Element::ONE);
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fraction_that_is_no_decimal_has_a_point_of_its_own() {
+    fn non_decimal_fractions_have_their_own_circle_point() {
         let point = |radians| Angle::radians(radians).circle_point();
         let third = Ratio::new(1, 3).unwrap();
         assert_ne!(point(third), point(Ratio::decimal("0.333333333").unwrap()));

@@ -429,7 +429,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn thirty_degrees_have_half_the_root_of_three_as_cosine() {
+    fn the_cosine_of_thirty_degrees_is_half_the_root_of_three() {
         let (cosine, sine) = Element::half_turns(1, 6).unwrap();
         assert_eq!((cosine + cosine) * (cosine + cosine), Element::integer(3));
         assert_eq!(sine + sine, Element::ONE);
@@ -448,7 +448,7 @@ mod tests {
     }
 
     #[test]
-    fn logarithms_and_projections_are_sums() {
+    fn logarithms_and_projections_are_additive() {
         let logarithms = Logarithms::get();
         let element = |seed| Element::from_parts(mix(seed), mix(!seed) * (seed & 1));
         let mut found = std::collections::HashSet::new();
@@ -469,7 +469,7 @@ mod tests {
     }
 
     #[test]
-    fn products_are_remainders() {
+    fn products_are_reduced_modulo_the_prime() {
         for seed in 0..10_000 {
             let (a, b) = (mix(seed) % P, mix(!seed) % P);
             assert_eq!(
@@ -481,7 +481,7 @@ mod tests {
     }
 
     #[test]
-    fn inverses_multiply_to_one() {
+    fn elements_times_their_inverses_are_one() {
         assert_eq!(Element::ZERO.inverse(), Element::ZERO);
         for re in [1, 2, 7, 2800, P - 1, P / 2] {
             let element = Element::from_parts(re, 0);
@@ -496,7 +496,7 @@ mod tests {
     }
 
     #[test]
-    fn rationals_come_back() {
+    fn rationals_round_trip() {
         let value = Element::integer(121) * Element::integer(2800).inverse();
         assert_eq!(value.to_rational(), Some((121, 2800)));
         assert_eq!((-value).to_rational(), Some((-121, 2800)));
@@ -504,7 +504,7 @@ mod tests {
     }
 
     #[test]
-    fn a_free_angle_lies_on_the_circle() {
+    fn cosine_and_sine_of_a_free_angle_lie_on_the_circle() {
         let (cosine, sine) = Element::circle_point(mix(3)).cosine_and_sine();
         assert_eq!(cosine * cosine + sine * sine, Element::ONE);
     }

@@ -286,7 +286,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn roots_multiply() {
+    fn products_of_roots_are_exact() {
         let root = |n| Number::integer(n).square_root().unwrap();
         assert!((root(2) * root(3) - root(6)).is_zero());
         assert!((root(12) - Number::integer(2) * root(3)).is_zero());

@@ -247,22 +247,22 @@ mod tests {
     }
 
     #[test]
-    fn robots_without_drift_are_accused_as_often_as_said() {
+    fn false_alarms_have_the_stated_rate() {
         let points = fleet(2000, &|_, _| 0.0);
         let rule = Rule {
             false_alarms: 0.05,
             ..Rule::default()
         };
-        let accused = charts(&points, &rule)
+        let alarmed = charts(&points, &rule)
             .iter()
             .filter(|own| own.alarm.is_some())
             .count();
         // At most 100 of 2000 on average; looks share days and are dependent, so fewer.
-        assert!((30..=125).contains(&accused), "{accused}");
+        assert!((30..=125).contains(&alarmed), "{alarmed}");
     }
 
     #[test]
-    fn drifts_are_found_and_come_first() {
+    fn drifts_are_detected_and_listed_first() {
         let drift = |robot: usize, day: usize| match robot {
             0..10 => 0.10 * day.saturating_sub(10).min(10) as f64 / 10.0,
             _ => 0.0,
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn robots_that_are_unlike_the_others_are_told() {
+    fn outlying_robots_are_reported() {
         let points = fleet(50, &|robot, _| if robot == 7 { 0.2 } else { 0.0 });
         let found = outliers(&charts(&points, &Rule::default()), 6.0);
         assert_eq!(found.len(), 1, "{found:?}");

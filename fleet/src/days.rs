@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn days_with_a_bad_file_are_left_out_as_a_whole() {
+    fn days_with_a_bad_file_are_excluded_entirely() {
         let name = |serial: u32, day: u32, file: &str| {
             format!("s3://b/logs/serial=R{serial}/day={day}/{file}.parquet")
         };

@@ -125,7 +125,7 @@ fn copied(from: &Path, to: &Path) {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn factor_files_of_a_bucket_answer_as_those_of_a_folder() {
+async fn factor_files_in_a_bucket_and_a_folder_give_equal_results() {
     let bench = Bench::new();
     let folder = bench.factor_files("factors");
     let root = bench.path("buckets");
@@ -136,21 +136,21 @@ async fn factor_files_of_a_bucket_answer_as_those_of_a_folder() {
     let place = folder.display().to_string();
     let here = asked(server, KEYS[1], &[QUERY, "--factors", &place]).await;
     let there = ["--factors", "s3://fleet/below"];
-    let told = asked(server, KEYS[1], &[QUERY, there[0], there[1]]).await;
-    assert_same(&rows(&here, ""), &rows(&told, ""));
+    let answer = asked(server, KEYS[1], &[QUERY, there[0], there[1]]).await;
+    assert_same(&rows(&here, ""), &rows(&answer, ""));
 
     // Damaged files are excluded and reported, as in a folder.
     let bucket = root.join("fleet/below/day one");
     let bytes = fs::read(bucket.join("day-3.parquet")).expect("a file");
     fs::write(bucket.join("copy.parquet"), &bytes).expect("a file");
     fs::write(bucket.join("half.parquet"), &bytes[..bytes.len() / 2]).expect("a file");
-    let told = asked(server, KEYS[1], &[QUERY, there[0], there[1]]).await;
-    assert_same(&rows(&here, ""), &rows(&told, ""));
-    let said = text(&told.stderr);
-    let left_out: Vec<&str> = { said.lines() }
+    let answer = asked(server, KEYS[1], &[QUERY, there[0], there[1]]).await;
+    assert_same(&rows(&here, ""), &rows(&answer, ""));
+    let message = text(&answer.stderr);
+    let left_out: Vec<&str> = { message.lines() }
         .filter(|line| line.starts_with("left out: s3://fleet/below/day"))
         .collect();
-    assert_eq!(left_out.len(), 2, "{said}");
+    assert_eq!(left_out.len(), 2, "{message}");
     assert!(
         left_out
             .iter()
@@ -158,11 +158,11 @@ async fn factor_files_of_a_bucket_answer_as_those_of_a_folder() {
     );
 
     // A wrong key, a missing bucket and an invalid address are reported with advice.
-    let told = asked(server, "another", &[QUERY, there[0], there[1]]).await;
-    let said = text(&told.stderr);
+    let answer = asked(server, "another", &[QUERY, there[0], there[1]]).await;
+    let message = text(&answer.stderr);
     assert!(
-        !told.status.success() && said.contains("AWS_SECRET_ACCESS_KEY"),
-        "{said}"
+        !answer.status.success() && message.contains("AWS_SECRET_ACCESS_KEY"),
+        "{message}"
     );
     for (place, word) in [
         ("s3://nothing/below", "AWS_ENDPOINT_URL"),
@@ -170,18 +170,18 @@ async fn factor_files_of_a_bucket_answer_as_those_of_a_folder() {
         ("s3:///below", "BUCKET"),
         ("ftp://fleet/below", "s3://BUCKET/PREFIX"),
     ] {
-        let told = asked(server, KEYS[1], &[QUERY, "--factors", place]).await;
-        let said = text(&told.stderr);
+        let answer = asked(server, KEYS[1], &[QUERY, "--factors", place]).await;
+        let message = text(&answer.stderr);
         assert!(
-            !told.status.success() && said.contains(word),
-            "{place}: {said}"
+            !answer.status.success() && message.contains(word),
+            "{place}: {message}"
         );
     }
 }
 
 #[cfg(feature = "distributed")]
 #[tokio::test(flavor = "multi_thread")]
-async fn three_executors_read_a_bucket_by_themselves() {
+async fn executors_read_a_bucket_with_their_own_keys() {
     let bench = Bench::new();
     let folder = bench.factor_files("factors");
     let root = bench.path("buckets");
@@ -192,28 +192,31 @@ async fn three_executors_read_a_bucket_by_themselves() {
     let place = folder.display().to_string();
     let here = asked(server, KEYS[1], &[QUERY, "--factors", &place]).await;
     for secrets in [[KEYS[1]; 2], ["another", KEYS[1]], [KEYS[1], "another"]] {
-        let [own, theirs] = secrets.map(|secret| environment(server, secret));
-        let Some(cluster) = common::cluster::cluster(bench.folder.path(), &own, &theirs) else {
+        let [own, other_environment] = secrets.map(|secret| environment(server, secret));
+        let Some(cluster) = common::cluster::cluster(bench.folder.path(), &own, &other_environment)
+        else {
             return;
         };
         let there = ["--factors", "s3://fleet/below", "--scheduler", &cluster.url];
         let more = ["--partitions", "6", "--limit", "120"];
-        let told = asked(server, KEYS[1], &[&[QUERY][..], &there, &more].concat()).await;
+        let answer = asked(server, KEYS[1], &[&[QUERY][..], &there, &more].concat()).await;
         if secrets == [KEYS[1]; 2] {
-            assert_same(&rows(&here, ""), &rows(&told, ""));
+            assert_same(&rows(&here, ""), &rows(&answer, ""));
             continue;
         }
         // The executors read the files, because only their key is wrong.
-        let said = text(&told.stderr);
+        let message = text(&answer.stderr);
         assert!(
-            !told.status.success() && said.contains("403") && said.contains("in its environment"),
-            "{secrets:?}: {said}"
+            !answer.status.success()
+                && message.contains("403")
+                && message.contains("in its environment"),
+            "{secrets:?}: {message}"
         );
     }
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn logs_of_a_bucket_answer_as_those_of_a_folder() {
+async fn logs_in_a_bucket_and_a_folder_give_equal_results() {
     let bench = Bench::new();
     let (folder, root) = (bench.path("logs"), bench.path("buckets"));
     for (member, day, log) in bench.logs.iter().filter(|own| own.0.number < 2) {
@@ -259,21 +262,21 @@ async fn logs_of_a_bucket_answer_as_those_of_a_folder() {
     )
     .await;
     let there = [OF_LOGS, "--logs", "s3://logs", "--robot", &robot];
-    let told = asked(server, KEYS[1], &there).await;
-    assert_same(&rows(&here, ""), &rows(&told, ""));
-    assert!(text(&told.stdout).contains(&format!("{},{DAYS},", serial(1))));
+    let answer = asked(server, KEYS[1], &there).await;
+    assert_same(&rows(&here, ""), &rows(&answer, ""));
+    assert!(text(&answer.stdout).contains(&format!("{},{DAYS},", serial(1))));
 
     // A truncated log removes a day of its robot, which is reported.
     let cut = root.join("logs/serial=R00001/day=2026-03-04/run.parquet");
     let bytes = fs::read(&cut).expect("a file");
     fs::write(&cut, &bytes[..bytes.len() - 9]).expect("a file");
     let less = asked(server, KEYS[1], &there).await;
-    let said = text(&less.stderr);
+    let message = text(&less.stderr);
     assert!(
-        said.contains("left out: s3://logs/serial=R00001/day=2026-03-04/run.parquet"),
-        "{said}"
+        message.contains("left out: s3://logs/serial=R00001/day=2026-03-04/run.parquet"),
+        "{message}"
     );
-    assert_same(&rows(&less, &serial(0)), &rows(&told, &serial(0)));
+    assert_same(&rows(&less, &serial(0)), &rows(&answer, &serial(0)));
     let own = rows(&less, &serial(1));
     let count = format!(",{},", DAYS - 1);
     assert!(

@@ -32,11 +32,11 @@ async fn ask(folder: &Path, scheduler: Option<&str>) -> Result<Vec<Pooled>, Stri
     let mut fleet = Fleet::open(options).await.expect("a fleet");
     let rows = fleet.sql(QUERY).await;
     let rows = rows.map_err(|error| error.strip_backtrace())?;
-    let told = rows.iter().flat_map(|batch| {
+    let answer = rows.iter().flat_map(|batch| {
         let own = batch.column(1).as_struct();
         (0..batch.num_rows()).map(move |row| pooled(own, row).expect("an estimate"))
     });
-    Ok(told.collect())
+    Ok(answer.collect())
 }
 
 fn assert_same(a: &[Pooled], b: &[Pooled]) {
@@ -61,7 +61,7 @@ fn assert_same(a: &[Pooled], b: &[Pooled]) {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn three_executors_answer_as_one_machine_does() {
+async fn three_executors_give_the_results_of_one_machine() {
     let bench = Bench::new();
     let folder = bench.factor_files("factors");
     let here = ask(&folder, None).await.expect("rows");
@@ -69,8 +69,8 @@ async fn three_executors_answer_as_one_machine_does() {
         return;
     };
     for _ in 0..2 {
-        let told = ask(&folder, Some(&cluster.url)).await;
-        assert_same(&here, &told.expect("rows"));
+        let answer = ask(&folder, Some(&cluster.url)).await;
+        assert_same(&here, &answer.expect("rows"));
     }
 }
 
@@ -91,31 +91,31 @@ async fn killed(when: impl Fn(&Cluster, Duration) -> bool + Send + 'static) {
         cluster.kill(0);
         cluster
     });
-    let told = ask(&folder, Some(&url)).await.expect("rows");
-    assert_same(&here, &told);
+    let answer = ask(&folder, Some(&url)).await.expect("rows");
+    assert_same(&here, &answer);
     // The two remaining executors continue.
     let _cluster = killer.join().expect("a killer that was in time");
     assert_same(&here, &ask(&folder, Some(&url)).await.expect("rows"));
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn an_executor_that_is_killed_while_it_works_costs_no_answer() {
+async fn a_query_survives_an_executor_killed_at_work() {
     killed(|cluster, _| cluster.results(0) > 0).await;
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn an_executor_that_is_killed_with_all_its_results_costs_no_answer() {
+async fn a_query_survives_an_executor_killed_with_its_results() {
     // Six partitions are complete, and their results are about to be fetched.
     killed(|cluster, _| (0..3).map(|own| cluster.results(own)).sum::<usize>() >= 6).await;
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn an_executor_that_is_killed_before_it_begins_costs_no_answer() {
+async fn a_query_survives_an_executor_killed_before_its_start() {
     killed(|_, passed| passed > Duration::from_millis(100)).await;
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn without_any_executor_a_query_ends_with_a_way_out() {
+async fn a_query_without_executors_ends_with_advice() {
     let bench = Bench::new();
     let folder = bench.factor_files("factors");
     let Some(mut cluster) = cluster(bench.folder.path(), &[], &[]) else {

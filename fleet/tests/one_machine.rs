@@ -39,9 +39,9 @@ fn estimates(rows: &[RecordBatch]) -> BTreeMap<String, Pooled> {
         let keys = keys.as_string::<i32>();
         let own: &StructArray = batch.column(1).as_struct();
         for row in 0..batch.num_rows() {
-            let told = pooled(own, row).expect("an estimate");
-            assert_eq!(told.problem, "", "{}", keys.value(row));
-            found.insert(keys.value(row).to_owned(), told);
+            let actual = pooled(own, row).expect("an estimate");
+            assert_eq!(actual.problem, "", "{}", keys.value(row));
+            found.insert(keys.value(row).to_owned(), actual);
         }
     }
     found
@@ -66,7 +66,7 @@ const PER_ROBOT: &str = "SELECT serial, estimate(factor, 64) AS e FROM factors G
 const ALL: &str = "SELECT 'all' AS k, estimate(factor, 64) AS e FROM factors";
 
 #[tokio::test]
-async fn a_query_gives_what_one_pass_over_the_logs_gives() {
+async fn fleet_estimates_equal_one_pass_over_the_logs() {
     let bench = Bench::new();
     let folder = bench.factor_files("factors");
     let mut fleet = Fleet::open(options(&folder, 2)).await.expect("a fleet");
@@ -98,8 +98,8 @@ async fn a_query_gives_what_one_pass_over_the_logs_gives() {
 
     // Other partitions, a merge of merges, and a query by week.
     let mut other = Fleet::open(options(&folder, 7)).await.expect("a fleet");
-    for (serial, told) in estimates(&other.sql(PER_ROBOT).await.expect("rows")) {
-        assert_same(&per_robot[&serial], &told);
+    for (serial, actual) in estimates(&other.sql(PER_ROBOT).await.expect("rows")) {
+        assert_same(&per_robot[&serial], &actual);
     }
     let whole = estimates(&fleet.sql(ALL).await.expect("rows"));
     assert_eq!(whole["all"].runs, (ROBOTS * DAYS) as u64);
@@ -134,8 +134,8 @@ async fn estimates_are_compared_in_sql() {
     assert_eq!(rows.num_rows(), ROBOTS);
     // Equal runs do not differ; robots whose friction differs by a tenth or more do.
     assert!((p.value(0) - 1.0).abs() < 1e-12);
-    let apart = (1..ROBOTS).filter(|row| p.value(*row) < 1e-3).count();
-    assert!(apart >= ROBOTS - 2, "{p:?}");
+    let different = (1..ROBOTS).filter(|row| p.value(*row) < 1e-3).count();
+    assert!(different >= ROBOTS - 2, "{p:?}");
     let v = rows.column(2).as_primitive::<Float64Type>();
     assert!(v.values().iter().all(|v| (0.02..0.09).contains(v)), "{v:?}");
     assert_eq!(rows.column(3).null_count(), ROBOTS);
@@ -147,7 +147,7 @@ async fn estimates_are_compared_in_sql() {
 }
 
 #[tokio::test]
-async fn nothing_is_counted_twice_and_nothing_is_lost() {
+async fn duplicate_and_damaged_files_are_excluded_and_reported() {
     let bench = Bench::new();
     let folder = bench.factor_files("factors");
     let mut good = Fleet::open(options(&folder, 2)).await.expect("a fleet");
@@ -203,17 +203,17 @@ async fn nothing_is_counted_twice_and_nothing_is_lost() {
     let middle = six.len() / 2;
     six[middle] ^= 0x40;
     put("day-6.parquet", &six);
-    let mut spoiled = Fleet::open(options(&folder, 2)).await.expect("a fleet");
-    let told = estimates(&spoiled.sql(ALL).await.expect("rows"));
-    let lost = spoiled
+    let mut corrupted = Fleet::open(options(&folder, 2)).await.expect("a fleet");
+    let actual = estimates(&corrupted.sql(ALL).await.expect("rows"));
+    let lost = corrupted
         .left_out()
         .iter()
         .any(|own| own.file.ends_with("day-6.parquet"));
-    assert!(lost || told["all"].damaged > 0);
+    assert!(lost || actual["all"].damaged > 0);
     if lost {
-        assert_same(&without["all"], &told["all"])
+        assert_same(&without["all"], &actual["all"])
     } else {
-        assert!(told["all"].equations < good["all"].equations)
+        assert!(actual["all"].equations < good["all"].equations)
     }
 
     // The late file arrives intact.
@@ -278,10 +278,10 @@ async fn logs_are_factored_in_sql() {
     let query = "SELECT serial, estimate(f['factor'], 64) AS e FROM (SELECT serial, day, factor('FiveBar', \
                  named_struct('time', time, 'q_left', q_left, 'q_right', q_right, 'tau_left', tau_left, \
                  'tau_right', tau_right)) AS f FROM logs GROUP BY serial, day) GROUP BY serial";
-    let told = estimates(&open().await.sql(query).await.expect("rows"));
-    assert_eq!(told.len(), ROBOTS);
-    for (serial, told) in &told {
-        assert_same(&reference[serial], told);
+    let actual = estimates(&open().await.sql(query).await.expect("rows"));
+    assert_eq!(actual.len(), ROBOTS);
+    for (serial, actual) in &actual {
+        assert_same(&reference[serial], actual);
     }
     // One log is truncated: its robot has one day less, which is reported.
     let cut = root.join("serial=R00001/day=2026-03-04/run.parquet");
@@ -291,11 +291,11 @@ async fn logs_are_factored_in_sql() {
     let less = estimates(&fleet.sql(query).await.expect("rows"));
     assert_eq!(fleet.left_out().len(), 1);
     assert_eq!(less[&serial(1)].runs, DAYS as u64 - 1);
-    assert_same(&told[&serial(0)], &less[&serial(0)]);
+    assert_same(&actual[&serial(0)], &less[&serial(0)]);
 }
 
 #[tokio::test]
-async fn a_page_tells_drifts_and_outliers() {
+async fn the_report_page_shows_the_fleet_size_and_its_parameters() {
     let bench = Bench::new();
     let folder = bench.factor_files("factors");
     let mut fleet = Fleet::open(options(&folder, 2)).await.expect("a fleet");

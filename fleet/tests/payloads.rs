@@ -189,25 +189,28 @@ fn parsed(bytes: &[u8]) -> Vec<Record> {
 }
 
 #[tokio::test]
-async fn payloads_with_names_are_those_of_the_logs() {
+async fn named_payloads_give_the_factors_of_their_logs() {
     let bench = Bench::new(true);
     let found = bench.factors(&by_day()).await.expect("rows");
     assert_eq!(found.len(), RUNS.len());
     for (run, (factor, problem)) in found.iter().enumerate() {
         assert_eq!(problem, "");
-        let (told, meant) = (
+        let (actual, expected) = (
             parsed(factor.as_deref().expect("a factor")),
             parsed(&bench.records(run)),
         );
-        assert!(!told.is_empty() && told.len() == meant.len());
-        for (told, meant) in told.iter().zip(&meant) {
-            assert_eq!(told.load, meant.load);
-            assert_eq!(told.columns, meant.columns);
-            assert_eq!((told.kind(), told.content), (meant.kind(), meant.content));
-            assert_eq!(told.factor, meant.factor);
+        assert!(!actual.is_empty() && actual.len() == expected.len());
+        for (actual, expected) in actual.iter().zip(&expected) {
+            assert_eq!(actual.load, expected.load);
+            assert_eq!(actual.columns, expected.columns);
+            assert_eq!(
+                (actual.kind(), actual.content),
+                (expected.kind(), expected.content)
+            );
+            assert_eq!(actual.factor, expected.factor);
         }
         // Each payload has its own factors.
-        let load = told[0].load.as_deref().unwrap_or("none");
+        let load = actual[0].load.as_deref().unwrap_or("none");
         assert_eq!(load, ["none", "heavy", "light"][run]);
     }
 
@@ -219,20 +222,24 @@ async fn payloads_with_names_are_those_of_the_logs() {
     let mut carried = 0;
     for batch in &rows {
         for row in 0..batch.num_rows() {
-            let told = pooled(batch.column(1).as_struct(), row).expect("an estimate");
-            assert_eq!((told.problem.as_str(), told.runs, told.unlike), ("", 1, 0));
+            let actual = pooled(batch.column(1).as_struct(), row).expect("an estimate");
+            assert_eq!(
+                (actual.problem.as_str(), actual.runs, actual.unlike),
+                ("", 1, 0)
+            );
             let run = RUNS
                 .iter()
                 .position(|own| own.1 == batch.column(0).as_string::<i32>().value(row));
             let mut pool = Pool::default();
             pool.push(&bench.records(run.expect("a run")));
-            let meant = pool.estimate();
-            assert!(told.parameters.len() > 10);
-            assert_eq!(told.parameters.len(), meant.parameters.len());
-            for (told, meant) in told.parameters.iter().zip(&meant.parameters) {
-                assert_eq!(told.name, meant.name);
-                let far = (told.value - meant.value).abs() / meant.value.abs().max(meant.deviation);
-                assert!(far <= 1e-12, "{told:?} {meant:?}");
+            let expected = pool.estimate();
+            assert!(actual.parameters.len() > 10);
+            assert_eq!(actual.parameters.len(), expected.parameters.len());
+            for (actual, expected) in actual.parameters.iter().zip(&expected.parameters) {
+                assert_eq!(actual.name, expected.name);
+                let far = (actual.value - expected.value).abs()
+                    / expected.value.abs().max(expected.deviation);
+                assert!(far <= 1e-12, "{actual:?} {expected:?}");
             }
             carried += 1;
         }
@@ -241,7 +248,7 @@ async fn payloads_with_names_are_those_of_the_logs() {
 }
 
 #[tokio::test]
-async fn a_payload_without_name_is_there_or_not() {
+async fn unnamed_payloads_may_be_booleans_or_text() {
     let bench = Bench::new(false);
     // As text and as a comparison.
     let first = day(0);
@@ -253,15 +260,15 @@ async fn a_payload_without_name_is_there_or_not() {
         let found = bench.factors(&carried).await.expect("rows");
         for (run, (factor, problem)) in found.iter().enumerate() {
             assert_eq!(problem, "", "{carried}");
-            let told = parsed(factor.as_deref().expect("a factor"));
-            assert_eq!(told, parsed(&bench.records(run)), "{carried}");
-            assert_eq!(told[0].load.is_some(), run > 0);
+            let actual = parsed(factor.as_deref().expect("a factor"));
+            assert_eq!(actual, parsed(&bench.records(run)), "{carried}");
+            assert_eq!(actual[0].load.is_some(), run > 0);
         }
     }
 }
 
 #[tokio::test]
-async fn a_payload_that_is_none_is_refused_with_a_way_out() {
+async fn invalid_payloads_are_rejected_with_advice() {
     let (named, single) = (Bench::new(true), Bench::new(false));
     for (bench, carried, word) in [
         (&named, "'true'", "several payloads"),

@@ -77,7 +77,7 @@ mod tests {
     use super::GearFriction;
 
     #[test]
-    fn conversions_are_inverse_and_have_the_stated_derivative() {
+    fn torque_conversions_are_inverse_with_the_stated_derivative() {
         let gear = GearFriction { coefficient: 0.1 };
         let moved = GearFriction {
             coefficient: 0.1 + 1e-6,

@@ -31,7 +31,7 @@ fn csv(content: &str) -> (Result<Log, Error>, tempfile::TempDir) {
 }
 
 #[test]
-fn a_good_file_is_read() {
+fn a_valid_file_is_read() {
     let (log, _folder) =
         csv("# a comment\ntime, q_1, other, tau_1\n0,1,x,3\n0.1,2,y,4\n0.2,5,z,6\n");
     let log = log.expect("a log");
@@ -42,7 +42,7 @@ fn a_good_file_is_read() {
 }
 
 #[test]
-fn a_value_that_nothing_measures_is_named_with_its_line() {
+fn implausible_values_are_reported_with_their_line() {
     let (log, folder) = csv("time,q_1,tau_1\n0,1,3\n0.1,2,1e300\n0.2,5,6\n");
     assert_eq!(
         text(log, folder.path()),
@@ -51,7 +51,7 @@ fn a_value_that_nothing_measures_is_named_with_its_line() {
 }
 
 #[test]
-fn a_missing_file_is_named() {
+fn a_missing_file_is_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let mapping = Mapping::for_robot(&EMPS.info());
     for name in ["none.csv", "none.mat"] {
@@ -70,7 +70,7 @@ fn a_missing_file_is_named() {
 }
 
 #[test]
-fn missing_columns_are_all_named() {
+fn all_missing_columns_are_reported() {
     let (log, folder) = csv("Time,q1,torque\n0,0,0\n");
     assert_eq!(
         text(log, folder.path()),
@@ -80,7 +80,7 @@ fn missing_columns_are_all_named() {
 }
 
 #[test]
-fn columns_of_one_name_are_refused() {
+fn duplicate_columns_are_rejected() {
     let (log, folder) = csv("# comment\ntime,q_1,other,q_1,other,tau_1\n0,0,0,0,0,0\n");
     let text = text(log, folder.path());
     let expected = "log.csv: the file has 2 columns `q_1`";
@@ -89,7 +89,7 @@ fn columns_of_one_name_are_refused() {
 }
 
 #[test]
-fn cells_are_named_by_line_and_column() {
+fn invalid_cells_are_reported_by_line_and_column() {
     let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n0.1,abc,NaN\n0.2,1\n0.3,,2\n");
     let error = log.clone().expect_err("an error");
     assert_eq!(error.problems[0].line, Some(3));
@@ -104,7 +104,7 @@ fn cells_are_named_by_line_and_column() {
 }
 
 #[test]
-fn lines_with_more_cells_than_others_are_errors() {
+fn lines_with_extra_cells_are_rejected() {
     let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n0.1,1,0,5\n0.2,,2,1\n0.3,1,1,\n");
     assert_eq!(
         text(log, folder.path()),
@@ -122,7 +122,7 @@ fn lines_with_more_cells_than_others_are_errors() {
 }
 
 #[test]
-fn lines_of_words_are_told_once() {
+fn repeated_header_lines_are_reported_once() {
     // A line of units is no error.
     let (log, _folder) = csv("time,q_1,tau_1\ns,rad,Nm\n0,0,0\n0.1,1,0\n");
     assert_eq!(log.expect("a log").samples(), 2);
@@ -138,7 +138,7 @@ fn lines_of_words_are_told_once() {
 }
 
 #[test]
-fn a_time_that_is_not_uniform_is_located() {
+fn nonuniform_time_is_located() {
     let (log, folder) = csv("time,q_1,tau_1\n0,0,0\n0.1,0,0\n0.2,0,0\n0.4,0,0\n0.5,0,0\n0.6,0,0\n");
     assert_eq!(
         text(log, folder.path()),
@@ -173,7 +173,7 @@ fn empty_files_are_errors() {
 }
 
 #[test]
-fn mappings_are_checked() {
+fn invalid_mappings_are_rejected() {
     let mapping = Mapping {
         time: Time::Column(String::from("time")),
         positions: vec![String::from("a"), String::from("b")],
@@ -253,7 +253,7 @@ fn settings() -> Settings {
 }
 
 #[test]
-fn short_runs_and_other_robots_are_errors() {
+fn short_runs_and_runs_of_other_robots_are_rejected() {
     let log = Log::new("run 1", 100.0, 1, vec![0.0; 20], vec![0.0; 20], false).expect("a log");
     let settings = Settings {
         skip_start: 30,
@@ -288,7 +288,7 @@ fn samples_outside_the_workspace_are_located() {
 }
 
 #[test]
-fn settings_are_checked_together() {
+fn all_invalid_settings_are_reported_together() {
     let bad = Settings {
         filter_cutoff_hz: -1.0,
         filter_order: 0,
@@ -306,7 +306,7 @@ fn settings_are_checked_together() {
 }
 
 #[test]
-fn experiments_are_checked() {
+fn invalid_experiments_are_rejected() {
     let run = |experiment: &[Log], model: &dyn Model| {
         let dataset = Dataset {
             runs: experiment,

@@ -40,7 +40,7 @@ fn names(model: &dyn Model, asymmetric: bool) -> Vec<String> {
 }
 
 #[test]
-fn columns_of_the_functions_are_kept_first() {
+fn columns_preferred_by_the_functions_are_kept_first() {
     assert_eq!(names(&EMPS, false), ["m_1R", "fv_1", "fs_1", "off_1"]);
     let kept = Keeping(&["off_1", "ia_1", "fs_1", "fv_1"]);
     // The order stays that of the symbols.
@@ -48,7 +48,7 @@ fn columns_of_the_functions_are_kept_first() {
 }
 
 #[test]
-fn a_choice_that_does_not_suit_the_columns_is_completed() {
+fn an_unsuitable_column_preference_is_completed() {
     // Dependent, unknown and missing columns.
     let kept = Keeping(&["m_1", "ia_1", "zz_7"]);
     assert_eq!(names(&kept, false), ["m_1R", "fv_1", "fs_1", "off_1"]);

@@ -29,7 +29,7 @@ fn spread(misses: &[f64]) -> (f64, f64) {
 }
 
 #[test]
-fn the_truth_is_within_three_correlated_deviations() {
+fn correlated_deviations_cover_the_truth_under_cogging() {
     let robot = DualV::new();
     let (mut white, mut correlated) = (Vec::new(), Vec::new());
     // Drives with a cogging torque that repeats with every tooth of the motor. In the full tier,

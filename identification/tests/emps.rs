@@ -63,7 +63,7 @@ fn printed(value: f64, expected: &str) {
 }
 
 #[test]
-fn symmetric_friction_is_the_published_table() {
+fn symmetric_friction_gives_the_published_table() {
     for weighted in [false, true] {
         let Some(result) = identified(&Settings {
             weighted,
@@ -123,7 +123,7 @@ fn the_unbiased_deviation_divides_by_the_degrees_of_freedom() {
 }
 
 #[test]
-fn asymmetric_friction_is_the_published_one() {
+fn asymmetric_friction_gives_the_published_table() {
     let asymmetric = Settings {
         weighted: false,
         asymmetric_friction: true,

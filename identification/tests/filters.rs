@@ -18,7 +18,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 }
 
 /// Fails if two vectors differ by more than `tolerance`.
-fn close(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
+fn assert_close(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
     assert_eq!(found.len(), expected.len(), "{what}: length");
     let worst = found
         .iter()
@@ -45,26 +45,26 @@ fn filters_agree_with_the_reference() {
         .zip(reference["sos"].as_array().expect("sections"))
     {
         let found = [section.b, section.a].concat();
-        close(&found, &numbers(expected), 1e-12, "section");
+        assert_close(&found, &numbers(expected), 1e-12, "section");
     }
     let (b, a) = cheby.polynomials();
-    close(&b, &numbers(&reference["cheby1_b"]), 1e-12, "Chebyshev b");
-    close(&a, &numbers(&reference["cheby1_a"]), 1e-9, "Chebyshev a");
+    assert_close(&b, &numbers(&reference["cheby1_b"]), 1e-12, "Chebyshev b");
+    assert_close(&a, &numbers(&reference["cheby1_a"]), 1e-9, "Chebyshev a");
     let filtered = filtfilt(&cheby, &x).expect("long enough");
-    close(
+    assert_close(
         &filtered,
         &numbers(&reference["sosfiltfilt_padlen24"]),
         1e-9,
         "sections, filtfilt",
     );
-    close(
+    assert_close(
         &filtered,
         &numbers(&reference["filtfilt_matlab_padlen24"]),
         1e-7,
         "polynomials, filtfilt",
     );
     let decimated = decimate(&x, 10).expect("long enough");
-    close(
+    assert_close(
         &decimated,
         &numbers(&reference["decimate_matlab"]),
         1e-7,
@@ -76,7 +76,7 @@ fn filters_agree_with_the_reference() {
         .skip(2)
         .step_by(10)
         .collect();
-    close(&decimated, &kept, 1e-9, "decimate in sections");
+    assert_close(&decimated, &kept, 1e-9, "decimate in sections");
 }
 
 #[test]
@@ -89,20 +89,20 @@ fn butterworth_agrees_with_the_reference() {
     // 100 Hz at 1 kHz, as for EMPS.
     let butter = butterworth(4, 0.2).expect("a design");
     let (b, a) = butter.polynomials();
-    close(
+    assert_close(
         &b,
         &numbers(&reference["butter4_b"]),
         1e-12,
         "Butterworth b",
     );
-    close(
+    assert_close(
         &a,
         &numbers(&reference["butter4_a"]),
         1e-12,
         "Butterworth a",
     );
     let filtered = filtfilt(&butter, &numbers(&reference["x"])).expect("long enough");
-    close(
+    assert_close(
         &filtered,
         &numbers(&reference["butter4_filtfilt_matlab"]),
         1e-9,
@@ -111,7 +111,7 @@ fn butterworth_agrees_with_the_reference() {
 }
 
 #[test]
-fn responses_are_those_of_the_definitions() {
+fn filter_responses_match_the_definitions() {
     // |H|² of cascaded sections at a fraction of the Nyquist frequency.
     let magnitude = |filter: &overact_identification::filters::LowPass, fraction: f64| -> f64 {
         let w = std::f64::consts::PI * fraction;
@@ -196,7 +196,7 @@ fn pushed(
 }
 
 #[test]
-fn blocks_give_what_the_whole_signal_gives() {
+fn filtering_in_blocks_equals_filtering_the_whole_signal() {
     const SAMPLES: usize = 61_234;
     let signals = [signal(SAMPLES, 0.0), signal(SAMPLES, 5.0)];
     let rows: Vec<f64> = (0..SAMPLES)
@@ -218,7 +218,7 @@ fn blocks_give_what_the_whole_signal_gives() {
             let (found, early) = pushed(&rows, 2 * block, |rows, found| stream.push(rows, found));
             assert!(block == SAMPLES || early > 0, "{name}: all came at the end");
             for (index, whole) in whole.iter().enumerate() {
-                close(&column(&found, index), whole, 1e-12, name);
+                assert_close(&column(&found, index), whole, 1e-12, name);
             }
         }
     }
@@ -242,7 +242,7 @@ fn blocks_give_what_the_whole_signal_gives() {
                 "{factor}: all came at the end"
             );
             for (index, whole) in whole.iter().enumerate() {
-                close(
+                assert_close(
                     &column(&found, index),
                     whole,
                     1e-11,
@@ -261,7 +261,7 @@ fn blocks_give_what_the_whole_signal_gives() {
             .skip((samples - 1) % 10)
             .step_by(10)
             .collect();
-        close(
+        assert_close(
             &decimate(&signal, 10).expect("long enough"),
             &kept,
             1e-11,
@@ -271,7 +271,7 @@ fn blocks_give_what_the_whole_signal_gives() {
 }
 
 #[test]
-fn a_decimation_behind_a_low_pass_is_one_after_the_other() {
+fn decimation_after_a_low_pass_equals_consecutive_filters() {
     let wave = |k: usize| (0.01 * k as f64).sin() + 0.3 * ((k * k) as f64).sin();
     let signal: Vec<f64> = (0..3000).map(wave).collect();
     let filter = butterworth(6, 0.05).expect("a design");
@@ -285,7 +285,7 @@ fn a_decimation_behind_a_low_pass_is_one_after_the_other() {
         for block in signal.chunks(77) {
             stream.push(block, &mut found);
         }
-        close(
+        assert_close(
             &found,
             &expected,
             1e-12,

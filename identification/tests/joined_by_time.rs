@@ -95,7 +95,7 @@ fn files_with_one_clock_are_joined_sample_by_sample() {
 }
 
 #[test]
-fn files_that_do_not_overlap_or_leap_are_refused() {
+fn files_without_overlap_or_with_time_jumps_are_rejected() {
     let row = |k: i32| (f64::from(k) / 10.0, f64::from(k));
     let positions = text("q", (100..150).map(row));
     let output = |rows: &mut dyn Iterator<Item = (f64, f64)>| {
@@ -106,16 +106,14 @@ fn files_that_do_not_overlap_or_leap_are_refused() {
         );
         log.expect_err("an error")
     };
-    let way_out = "files are joined by time: check that they are of one run and that their clocks have the same origin";
+    let remedy = "files are joined by time: check that they are of one run and that their clocks have the same origin";
     assert_eq!(
         output(&mut (0..50).map(row)),
-        format!("i.csv: the file ends at 4.9 s, before q.csv begins at 10 s\n  help: {way_out}")
+        format!("i.csv: the file ends at 4.9 s, before q.csv begins at 10 s\n  help: {remedy}")
     );
     assert_eq!(
         output(&mut (200..250).map(row)),
-        format!(
-            "i.csv: the file begins at 20 s, when q.csv has ended at 14.9 s\n  help: {way_out}"
-        )
+        format!("i.csv: the file begins at 20 s, when q.csv has ended at 14.9 s\n  help: {remedy}")
     );
     let grow =
         "the clock starts anew there, or a stamp is wrong: write each recording to its own file";
@@ -140,7 +138,7 @@ fn files_that_do_not_overlap_or_leap_are_refused() {
 }
 
 #[test]
-fn the_result_says_what_was_interpolated() {
+fn the_result_reports_the_interpolation() {
     // A mass of 2 kg with viscous friction of 3 N s/m, moved by two sines.
     let motion = |t: f64| {
         let sines = [(0.1, 3.0), (0.05, 7.0)].map(|(size, rate)| {

@@ -93,7 +93,7 @@ fn textbook(w: &DMatrix<f64>, y: &DVector<f64>) -> (DVector<f64>, DVector<f64>, 
     (x, deviations, square.sqrt())
 }
 
-fn close(found: &[f64], expected: &DVector<f64>) {
+fn assert_close(found: &[f64], expected: &DVector<f64>) {
     for (found, expected) in found.iter().zip(expected.iter()) {
         assert!(
             (found - expected).abs() <= TOLERANCE * expected.abs(),
@@ -103,13 +103,13 @@ fn close(found: &[f64], expected: &DVector<f64>) {
 }
 
 #[test]
-fn ordinary_least_squares_are_the_textbook_ones() {
+fn ordinary_least_squares_match_the_textbook() {
     let lines = dense();
     let (w, y) = stack(&lines, &[1.0; 3]);
     let (x, deviations, sigma) = textbook(&w, &y);
     let found = estimate(&system(&lines), &[0, 1, 2, 3], &settings(false)).expect("an estimate");
-    close(&found.values, &x);
-    close(&found.standard_deviations, &deviations);
+    assert_close(&found.values, &x);
+    assert_close(&found.standard_deviations, &deviations);
     assert!((found.residual_deviation - sigma).abs() < TOLERANCE * sigma);
     let residual = (&y - &w * &x).norm();
     assert!((found.residual_norm - residual).abs() < TOLERANCE * residual);
@@ -130,7 +130,7 @@ fn ordinary_least_squares_are_the_textbook_ones() {
 }
 
 #[test]
-fn weighted_least_squares_are_the_textbook_ones() {
+fn weighted_least_squares_match_the_textbook() {
     let lines = dense();
     // Each line separately; the third one has no column 0, so three parameters only.
     let own: Vec<f64> = lines
@@ -154,8 +154,8 @@ fn weighted_least_squares_are_the_textbook_ones() {
     let (w, y) = stack(&lines, &own);
     let (x, deviations, sigma) = textbook(&w, &y);
     let found = estimate(&system(&lines), &[0, 1, 2, 3], &settings(true)).expect("an estimate");
-    close(&found.values, &x);
-    close(&found.standard_deviations, &deviations);
+    assert_close(&found.values, &x);
+    assert_close(&found.standard_deviations, &deviations);
     assert!((found.residual_deviation - sigma).abs() < TOLERANCE * sigma);
     // Reported residuals stay in physical units.
     let (w, y) = stack(&lines, &[1.0; 3]);
@@ -164,7 +164,7 @@ fn weighted_least_squares_are_the_textbook_ones() {
 }
 
 #[test]
-fn elimination_removes_the_worst_and_says_so() {
+fn elimination_removes_and_reports_the_worst_parameters() {
     let lines = dense();
     let system = system(&lines);
     let names: Vec<String> = ["a", "b", "c", "d"].map(String::from).to_vec();

@@ -45,7 +45,7 @@ fn log(samples: usize, velocities: &[&str]) -> (Log, tempfile::TempDir) {
 }
 
 #[test]
-fn they_are_filtered_and_accelerations_are_their_differences() {
+fn measured_velocities_are_filtered_and_differentiated() {
     let settings = Settings::for_bandwidth(5.0, FREQUENCY, &EMPS.info()).trimmed(FREQUENCY);
     // The second one stays in its file.
     for samples in [20_000, 530_000] {
@@ -74,7 +74,7 @@ fn they_are_filtered_and_accelerations_are_their_differences() {
 }
 
 #[test]
-fn without_them_positions_are_differentiated() {
+fn without_velocities_positions_are_differentiated() {
     let settings = Settings::for_bandwidth(5.0, FREQUENCY, &EMPS.info()).trimmed(FREQUENCY);
     let (log, _folder) = log(20_000, &[]);
     assert!(!log.has_velocities());
@@ -86,7 +86,7 @@ fn without_them_positions_are_differentiated() {
 }
 
 #[test]
-fn a_part_of_a_run_keeps_them() {
+fn a_part_of_a_run_keeps_measured_velocities() {
     let (log, _folder) = log(20_000, &["2*$2/2"]);
     let beginning = log.beginning(100).expect("a beginning");
     assert!(beginning.has_velocities());
@@ -97,7 +97,7 @@ fn a_part_of_a_run_keeps_them() {
 }
 
 #[test]
-fn there_is_one_for_each_actuator() {
+fn every_actuator_needs_a_velocity_column() {
     let error = mapping(&["$2", "$3"]).check().expect_err("an error");
     assert_eq!(
         error.to_string(),

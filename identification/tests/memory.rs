@@ -105,7 +105,7 @@ const THOROUGH: &[Case] = &[
 ];
 
 #[test]
-fn more_samples_take_hardly_more_memory() {
+fn memory_hardly_grows_with_the_number_of_samples() {
     let robot = DualV::new();
     let mut experiment = experiment(&robot, 1.0, 1);
     // Five periods of 1 Hz.

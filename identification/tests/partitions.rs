@@ -178,7 +178,7 @@ fn worst_condition(motions: &[Motion], projection: &Projection) -> f64 {
 }
 
 #[test]
-fn noise_is_covered_by_the_standard_deviations() {
+fn standard_deviations_cover_the_noise() {
     let runs = [run("one", 1.0, 0.5), run("two", 2.0, 0.5)];
     let validation = [run("three", 3.0, 0.5)];
     let truth = truth();
@@ -242,7 +242,7 @@ fn predicted(run: &Log, from: &Log) -> (f64, f64) {
 }
 
 #[test]
-fn choices_are_judged_by_runs_that_were_held_out() {
+fn partitions_are_compared_on_held_out_runs() {
     let runs = [run("one", 1.0, 0.5), run("two", 2.0, 0.5)];
     let folds = [predicted(&runs[0], &runs[1]), predicted(&runs[1], &runs[0])];
     let norm = |part: fn(&(f64, f64)) -> f64| {

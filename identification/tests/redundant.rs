@@ -127,7 +127,7 @@ fn check(estimate: &Estimate) {
 }
 
 #[test]
-fn both_cases_and_the_payload_recover_the_truth() {
+fn both_projections_recover_the_parameters_and_the_payload() {
     let runs = [
         run("unloaded", 1.0, false, 0.0),
         run("loaded", 2.0, true, 0.0),
@@ -174,7 +174,7 @@ fn both_cases_and_the_payload_recover_the_truth() {
 }
 
 #[test]
-fn times_count_from_the_start_of_the_log() {
+fn times_are_relative_to_the_start_of_the_log() {
     let log = run("run", 1.0, false, 0.0);
     let moved = motion(&PAIR, &log, &settings(), &|_, _| {}).expect("a motion");
     assert_eq!(moved.time(0), 20.0 / 500.0);
@@ -210,7 +210,7 @@ fn times_count_from_the_start_of_the_log() {
 }
 
 #[test]
-fn the_regroupings_are_exact() {
+fn regroupings_are_exact() {
     let columns = ColumnSet::new(&PAIR, true, false, 1).expect("columns");
     let base = base_parameters(&PAIR, &columns, PayloadUse::Separate, 1).expect("base");
     assert_eq!(base.columns, [8, 1, 2, 3, 9]);
@@ -255,7 +255,7 @@ fn loaded_runs_alone_regroup_the_payload() {
 }
 
 #[test]
-fn friction_splits_by_the_direction_of_each_joint() {
+fn directional_friction_follows_the_direction_of_each_joint() {
     // Motor 2 turns backwards: its negative direction is the positive one of motor 1.
     let runs = [run("unloaded", 1.0, false, 0.7)];
     let result = identified(
@@ -294,7 +294,7 @@ fn friction_splits_by_the_direction_of_each_joint() {
 }
 
 #[test]
-fn many_partitions_share_one_preparation() {
+fn partitions_share_one_preparation() {
     let runs = [run("unloaded", 1.0, false, 0.0)];
     let steps = RefCell::new(Vec::new());
     let projections = [0, 1].map(|kept| Projection::Actuators(vec![kept]));
@@ -314,7 +314,7 @@ fn many_partitions_share_one_preparation() {
 }
 
 #[test]
-fn the_document_has_its_keys() {
+fn the_json_result_has_its_documented_keys() {
     let runs = [run("unloaded", 1.0, false, 0.0)];
     let document = serde_json::to_value(identified(&runs, &settings())).expect("JSON");
     for key in ["robot", "runs", "estimates", "cross_validation", "warnings"] {

@@ -52,7 +52,7 @@ fn force(v: f64, a: f64) -> f64 {
 }
 
 #[test]
-fn the_filters_transient_is_cut_off_by_default() {
+fn filter_transients_are_trimmed_by_default() {
     // Both ends have large accelerations, which the filter does not continue.
     let log = run(4.0, |t| {
         let (w, u) = (TAU * 0.6, TAU * 1.7);
@@ -77,7 +77,7 @@ fn the_filters_transient_is_cut_off_by_default() {
 }
 
 #[test]
-fn standstill_does_not_spoil_coulomb_friction_with_a_dead_band() {
+fn a_velocity_dead_band_protects_coulomb_friction_at_standstill() {
     // Strokes with rests in between, in which the axis creeps by a micrometre without force.
     let log = run(12.0, |t| {
         let (stroke, at) = ((t / 2.0).floor(), t.rem_euclid(2.0));
@@ -107,7 +107,7 @@ fn standstill_does_not_spoil_coulomb_friction_with_a_dead_band() {
 }
 
 #[test]
-fn impossible_dead_bands_are_refused() {
+fn invalid_dead_bands_are_rejected() {
     for band in [-1.0, f64::NAN, f64::INFINITY] {
         let settings = Settings {
             velocity_dead_band: band,

@@ -95,7 +95,7 @@ fn files() -> Vec<(&'static str, Mapping)> {
     files
 }
 
-fn is_the_log(log: &Log, name: &str) {
+fn assert_expected_log(log: &Log, name: &str) {
     let mut reader = log
         .reader()
         .unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -114,10 +114,10 @@ fn is_the_log(log: &Log, name: &str) {
     }
 }
 
-fn all_are_the_log(folder: &Path) {
+fn assert_all_formats_equal(folder: &Path) {
     for (name, mapping) in files() {
         let log = read(&folder.join(name), &mapping, false);
-        is_the_log(&log.unwrap_or_else(|error| panic!("{error}")), name);
+        assert_expected_log(&log.unwrap_or_else(|error| panic!("{error}")), name);
     }
 }
 
@@ -188,11 +188,11 @@ fn kept() -> PathBuf {
 
 #[test]
 fn every_format_gives_the_same_numbers() {
-    all_are_the_log(&kept());
+    assert_all_formats_equal(&kept());
 }
 
 #[test]
-fn every_format_written_anew_gives_the_same_numbers() {
+fn newly_written_files_of_every_format_give_the_same_numbers() {
     let folder = tempfile::tempdir().expect("a folder");
     let python = std::env::var("OVERACT_PYTHON").unwrap_or_else(|_| String::from("python3"));
     let output = Command::new(python)
@@ -212,12 +212,12 @@ fn every_format_written_anew_gives_the_same_numbers() {
         return;
     }
     assert!(output.status.success(), "{shown_output}");
-    all_are_the_log(folder.path());
+    assert_all_formats_equal(folder.path());
 }
 
 #[cfg(not(feature = "mcap"))]
 #[test]
-fn a_file_of_a_feature_is_named_with_it() {
+fn unsupported_formats_are_reported_with_their_feature() {
     for (name, feature) in [
         ("same_lz4.mcap", "mcap"),
         ("same.h5", "hdf5"),

@@ -11,7 +11,7 @@ const FREQUENCY: f64 = 1000.0;
 const SAMPLES: usize = 20_000;
 
 /// Velocity below which the drive of these tests sticks, m/s.
-const STICKS: f64 = 0.05;
+const STICTION_VELOCITY: f64 = 0.05;
 
 /// A drive of 95 kg with 40 N of additional friction while it sticks.
 fn log() -> Log {
@@ -24,7 +24,11 @@ fn log() -> Log {
             let acceleration = -0.1 * omega.powi(2) * (omega * t).sin()
                 - 0.05 * (2.3 * omega).powi(2) * (2.3 * omega * t).sin();
             let position = 0.1 * (omega * t).sin() + 0.05 * (2.3 * omega * t).sin();
-            let sticks = if velocity.abs() < STICKS { 40.0 } else { 0.0 };
+            let sticks = if velocity.abs() < STICTION_VELOCITY {
+                40.0
+            } else {
+                0.0
+            };
             let force = 95.0 * acceleration + 200.0 * velocity + 20.0 * velocity.signum() + sticks;
             (position, force)
         })
@@ -52,7 +56,7 @@ fn identified(limit: Vec<f64>) -> Identification {
 }
 
 #[test]
-fn equations_at_standstill_are_left_out_and_counted() {
+fn equations_at_standstill_are_skipped_and_counted() {
     let (all, moving) = (identified(Vec::new()), identified(vec![0.08]));
     assert!(all.runs[0].standstill_equations.is_empty());
     let left_out = moving.runs[0].standstill_equations[0];
@@ -90,7 +94,7 @@ fn equations_at_standstill_are_left_out_and_counted() {
 }
 
 #[test]
-fn limits_that_leave_few_equations_are_reported() {
+fn standstill_limits_that_skip_most_equations_are_reported() {
     let most = identified(vec![0.5]);
     let left_out = most.runs[0].standstill_equations[0];
     let all = left_out + most.estimates[0].equations;
@@ -161,7 +165,7 @@ fn check_words_for(friction: impl Fn(f64) -> f64) -> String {
 }
 
 #[test]
-fn friction_near_standstill_rises_or_falls() {
+fn rising_and_falling_friction_near_standstill_is_detected() {
     let rises = check_words_for(|speed| 1.0 + (-speed / 0.07).exp());
     assert!(
         rises.starts_with("the friction in the torque of joint 1 rises towards standstill by "),
@@ -184,7 +188,7 @@ fn friction_near_standstill_rises_or_falls() {
 }
 
 #[test]
-fn limits_that_make_no_sense_are_refused() {
+fn invalid_standstill_limits_are_rejected() {
     let refused = |model: &dyn Model, limit: Vec<f64>| {
         let settings = Settings {
             kept_actuators: vec![0],

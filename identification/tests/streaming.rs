@@ -89,7 +89,7 @@ fn a_long_file_is_identified_block_by_block() {
 }
 
 #[test]
-fn a_time_that_is_not_uniform_far_inside_is_located() {
+fn nonuniform_time_deep_inside_a_long_file_is_located() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("gap.csv");
     let mut text = String::from("time,q_1,tau_1\n");

@@ -58,7 +58,7 @@ fn hinge(
 }
 
 #[test]
-fn what_changes_the_model_is_reported_unless_it_is_neutral() {
+fn unsupported_attributes_are_reported_unless_neutral() {
     let text = hinge(
         "",
         "density='1.2' viscosity='1e-5' timestep='0.001'",
@@ -97,7 +97,7 @@ fn what_changes_the_model_is_reported_unless_it_is_neutral() {
 }
 
 #[test]
-fn names_outside_the_specification_are_reported_and_counted() {
+fn unknown_names_are_reported_and_counted() {
     let text = hinge("", "", "weight='2'", "dampign='3'", "", "<mass/>\n<mass/>");
     let found = imported(&[("robot.xml", &text)]);
     assert_eq!(
@@ -105,13 +105,13 @@ fn names_outside_the_specification_are_reported_and_counted() {
         ["3: body weight ×1", "4: joint dampign ×1", "5: mass ×2"]
     );
     let mut all = found.account.reported.iter();
-    let slip = all.find(|entry| entry.attribute.as_deref() == Some("dampign"));
-    let reason = &slip.expect("an entry").reason;
+    let misspelt = all.find(|entry| entry.attribute.as_deref() == Some("dampign"));
+    let reason = &misspelt.expect("an entry").reason;
     assert!(reason.ends_with("did you mean `damping`?"), "{reason}");
 }
 
 #[test]
-fn what_has_no_effect_is_ignored_with_a_reason() {
+fn attributes_without_effect_are_ignored_with_a_reason() {
     let found = imported(&[("robot.xml", &hinge("", "timestep='0.001'", "", "", "", ""))]);
     let ignored = &found.account.ignored;
     assert_eq!(ignored.len(), 1, "{ignored:?}");
@@ -132,7 +132,7 @@ fn two_links(more: &str) -> String {
 }
 
 #[test]
-fn loops_and_couplings_that_are_not_understood_reject_the_file() {
+fn unsupported_loops_and_couplings_reject_the_file() {
     for (more, expected) in [
         (
             "<gazebo>\n<joint name='l' type='revolute'/></gazebo>",
@@ -164,15 +164,15 @@ fn loops_and_couplings_that_are_not_understood_reject_the_file() {
             "3: a transmission of type `several joints` couples",
         ),
     ] {
-        let said = errors("robot.urdf", &two_links(more));
-        assert!(said.starts_with(expected), "{more}: {said}");
+        let message = errors("robot.urdf", &two_links(more));
+        assert!(message.starts_with(expected), "{more}: {message}");
     }
     let at_a_site = hinge("", "", "", "", "site='s'", "");
     assert!(errors("robot.xml", &at_a_site).starts_with("6: `site` of <motor>: "));
 }
 
 #[test]
-fn extensions_of_urdf_are_reported_or_ignored() {
+fn urdf_extensions_are_reported_or_ignored() {
     let more = "<gazebo reference='b'><material>Red</material><springStiffness>3</springStiffness></gazebo>\n\
         <gazebo reference='j'><springStiffness>0</springStiffness><unheard_of/></gazebo>\n\
         <transmission name='t'><type>transmission_interface/SimpleTransmission</type><joint name='j'/>\
@@ -185,14 +185,14 @@ fn extensions_of_urdf_are_reported_or_ignored() {
 }
 
 #[test]
-fn a_yaml_file_of_another_name_that_closes_loops_is_reported() {
+fn a_loop_yaml_file_with_another_name_is_reported() {
     let robot = two_links("");
     let yaml = "name_mot: [j]\nclosed_loop: [['a', 'b']]\n";
-    let stranger = "closed_loop: [['x', 'y']]\n";
+    let unrelated = "closed_loop: [['x', 'y']]\n";
     let found = imported(&[
         ("robot.urdf", &robot),
         ("other.yaml", yaml),
-        ("stranger.yaml", stranger),
+        ("stranger.yaml", unrelated),
     ]);
     let reported = &found.account.reported;
     assert_eq!(reported.len(), 1, "{reported:?}");
@@ -201,7 +201,7 @@ fn a_yaml_file_of_another_name_that_closes_loops_is_reported() {
 }
 
 #[test]
-fn keys_of_yaml_and_par_that_are_not_used_are_reported() {
+fn unused_yaml_and_par_keys_are_reported() {
     let found = imported(&[
         ("robot.urdf", &two_links("")),
         ("robot.yaml", "name_mot: [j]\nrotor_inertia: [0.1]\n"),
@@ -217,7 +217,7 @@ fn keys_of_yaml_and_par_that_are_not_used_are_reported() {
 }
 
 #[test]
-fn elements_of_sdformat_that_are_not_used_are_reported() {
+fn unused_sdformat_elements_are_reported() {
     let text = "<sdf version='1.9'><model name='m'>\n<link name='a'><kinematic>true</kinematic>\
         <velocity_decay><linear>0.1</linear></velocity_decay><visual name='v'/></link>\n\
         <joint name='j' type='revolute'><parent>world</parent><child>a</child><axis><xyz>0 0 1</xyz>\
@@ -257,7 +257,7 @@ fn springs_of_loops_are_honoured() {
 }
 
 #[test]
-fn links_with_a_shape_and_without_mass_are_reported_where_they_move() {
+fn moving_links_with_a_shape_but_no_mass_are_reported() {
     let shape = "<visual><geometry/></visual>";
     let text = two_links("")
         .replace(
@@ -276,14 +276,14 @@ fn links_with_a_shape_and_without_mass_are_reported_where_they_move() {
 }
 
 #[test]
-fn torques_of_balls_are_reported_by_their_names_in_the_file() {
+fn unsupported_ball_joint_torques_are_reported() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models/ankle.xml");
     let text = std::fs::read_to_string(path).expect("an ankle");
     let ball = "<joint name=\"left_ball\"";
     assert!(text.contains(ball));
     let text = text.replace(ball, &format!("{ball} frictionloss=\"0.1\""));
     let found = imported(&[("ankle.xml", &text)]);
-    let said = reported(&found.account);
-    assert_eq!(said.len(), 1, "{said:?}");
-    assert!(said[0].ends_with("joint frictionloss ×1"), "{said:?}");
+    let message = reported(&found.account);
+    assert_eq!(message.len(), 1, "{message:?}");
+    assert!(message[0].ends_with("joint frictionloss ×1"), "{message:?}");
 }

@@ -47,12 +47,15 @@ fn one_body(body: &str, more: &str) -> String {
 }
 
 #[test]
-fn xml_is_read_without_entities_and_without_a_network() {
+fn xml_entities_and_deep_nesting_are_rejected() {
     let text = "<?xml version='1.0'?>\n<!DOCTYPE robot [<!ENTITY a 'aaaa'>]>\n<robot name='&a;'/>";
-    let said = refused("robot.urdf", text);
-    assert!(said.contains("document type and its entities"), "{said}");
-    let said = refused("robot.urdf", "<robot name='r'>\n<link name='a'>\n</robot>");
-    assert!(said.starts_with("3: this is not valid XML"), "{said}");
+    let message = refused("robot.urdf", text);
+    assert!(
+        message.contains("document type and its entities"),
+        "{message}"
+    );
+    let message = refused("robot.urdf", "<robot name='r'>\n<link name='a'>\n</robot>");
+    assert!(message.starts_with("3: this is not valid XML"), "{message}");
     assert!(refused("robot.urdf", "<collada/>").contains("neither MJCF nor URDF"));
     let deep =
         "<mujoco>".to_owned() + &"<body>".repeat(5000) + &"</body>".repeat(5000) + "</mujoco>";
@@ -60,41 +63,41 @@ fn xml_is_read_without_entities_and_without_a_network() {
 }
 
 #[test]
-fn joints_that_cannot_be_said_are_named() {
-    let said = refused("robot.urdf", &two_links("floating", ""));
+fn unsupported_joints_and_tendons_are_rejected_by_name() {
+    let message = refused("robot.urdf", &two_links("floating", ""));
     assert!(
-        said.starts_with("4: the joint `j` is `floating`") && said.contains("--fix-base"),
-        "{said}"
+        message.starts_with("4: the joint `j` is `floating`") && message.contains("--fix-base"),
+        "{message}"
     );
     assert!(refused("robot.urdf", &two_links("planar", "")).contains("`planar`"));
     assert!(refused("robot.urdf", &two_links("fixed", "")).contains("no joint that moves"));
-    let said = refused("robot.xml", &one_body("<freejoint/>", ""));
+    let message = refused("robot.xml", &one_body("<freejoint/>", ""));
     assert!(
-        said.starts_with("3: ") && said.contains("--fix-base"),
-        "{said}"
+        message.starts_with("3: ") && message.contains("--fix-base"),
+        "{message}"
     );
     let tendon = "<tendon>\n<spatial name='t' stiffness='1'/></tendon>";
-    let said = refused("robot.xml", &one_body("<joint name='j'/>", tendon));
+    let message = refused("robot.xml", &one_body("<joint name='j'/>", tendon));
     assert!(
-        said.contains("the tendon `t` exerts forces along a path"),
-        "{said}"
+        message.contains("the tendon `t` exerts forces along a path"),
+        "{message}"
     );
 }
 
 #[test]
-fn what_is_missing_is_named_with_what_is_near() {
+fn unknown_names_are_rejected_with_suggestions() {
     let more = "<joint name='k' type='revolute'><parent link='b'/><child link='bb'/></joint>";
-    let said = refused("robot.urdf", &two_links("revolute", more));
-    assert!(said.starts_with("6: there is no link `bb`"), "{said}");
+    let message = refused("robot.urdf", &two_links("revolute", more));
+    assert!(message.starts_with("6: there is no link `bb`"), "{message}");
     let actuator = "<actuator>\n<motor joint='elbov'/></actuator>";
-    let said = refused("robot.xml", &one_body("<joint name='elbow'/>", actuator));
+    let message = refused("robot.xml", &one_body("<joint name='elbow'/>", actuator));
     assert!(
-        said.contains("7: there is no joint `elbov`") && said.contains("elbow"),
-        "{said}"
+        message.contains("7: there is no joint `elbov`") && message.contains("elbow"),
+        "{message}"
     );
     let equality = "<equality>\n<connect body1='b' body2='c' anchor='0 0 0'/></equality>";
-    let said = refused("robot.xml", &one_body("<joint name='elbow'/>", equality));
-    assert!(said.contains("there is no body `c`"), "{said}");
+    let message = refused("robot.xml", &one_body("<joint name='elbow'/>", equality));
+    assert!(message.contains("there is no body `c`"), "{message}");
     let options = Options {
         actuated: Some(vec!["k".to_owned()]),
         ..Options::default()
@@ -105,7 +108,7 @@ fn what_is_missing_is_named_with_what_is_near() {
 }
 
 #[test]
-fn joints_in_a_circle_and_numbers_that_are_none_are_found() {
+fn cyclic_joints_and_invalid_numbers_are_rejected() {
     let circle = "<robot name='r'><link name='o'/><link name='a'/><link name='b'/>\n\
         <joint name='j' type='revolute'><parent link='a'/><child link='b'/></joint>\n\
         <joint name='k' type='revolute'><parent link='b'/><child link='a'/></joint></robot>";
@@ -119,41 +122,44 @@ fn joints_in_a_circle_and_numbers_that_are_none_are_found() {
 }
 
 #[test]
-fn includes_that_are_missing_or_go_in_a_circle_are_found() {
-    let said = refused(
+fn missing_and_cyclic_includes_are_rejected() {
+    let message = refused(
         "robot.xml",
         "<mujoco>\n<include file='other.xml'/></mujoco>",
     );
     assert!(
-        said.starts_with("2: `") && said.contains("can't be read"),
-        "{said}"
+        message.starts_with("2: `") && message.contains("can't be read"),
+        "{message}"
     );
-    let said = refused(
+    let message = refused(
         "robot.xml",
         "<mujoco>\n<include file='robot.xml'/></mujoco>",
     );
-    assert!(said.starts_with("2: `robot.xml` includes itself"), "{said}");
+    assert!(
+        message.starts_with("2: `robot.xml` includes itself"),
+        "{message}"
+    );
 }
 
 #[test]
-fn loops_that_cannot_close_are_named() {
+fn loops_that_cannot_close_are_rejected_by_name() {
     let model = "<mujoco>\n<worldbody>\n<body name='a'><joint name='j'/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>\
         <site name='s' pos='1 0 0'/></body><site name='t' pos='3 0 0'/></worldbody>\n\
         <equality>\n<connect name='far' site1='s' site2='t'/></equality>\n<actuator><motor joint='j'/></actuator></mujoco>";
-    let said = refused("robot.xml", model);
+    let message = refused("robot.xml", model);
     assert!(
-        said.starts_with("5: the loop of `far` can't close"),
-        "{said}"
+        message.starts_with("5: the loop of `far` can't close"),
+        "{message}"
     );
-    let said = refused(
+    let message = refused(
         "robot.xml",
         &model
             .replace("<motor joint='j'/>", "")
             .replace("<actuator></actuator>", ""),
     );
     assert!(
-        said.contains("does not say which joints of its loops are driven"),
-        "{said}"
+        message.contains("does not say which joints of its loops are driven"),
+        "{message}"
     );
 }
 
@@ -166,11 +172,11 @@ fn table(line: &str, by: &str) -> String {
 }
 
 #[test]
-fn tables_that_say_no_robot_are_told_at_their_line() {
-    let said = refused("two.par", &table("", ""));
+fn invalid_par_tables_are_rejected_at_their_line() {
+    let message = refused("two.par", &table("", ""));
     assert!(
-        said.starts_with("8: `D2` has no value") && said.contains("--value D2="),
-        "{said}"
+        message.starts_with("8: `D2` has no value") && message.contains("--value D2="),
+        "{message}"
     );
     for (line, by, expected) in [
         ("{0,D2}", "{0,0", "8: a list is not closed"),
@@ -207,20 +213,20 @@ fn tables_that_say_no_robot_are_told_at_their_line() {
         ("M = {1,M2}", "what", "14: this line belongs to no key"),
         ("M = {1,M2}", "a b = 1", "14: this is not a key"),
     ] {
-        let said = refused("two.par", &table(line, by).replace("D2", "0"));
-        assert!(said.starts_with(expected), "{by}: {said}");
+        let message = refused("two.par", &table(line, by).replace("D2", "0"));
+        assert!(message.starts_with(expected), "{by}: {message}");
     }
     // Files in no known format are reported without a line.
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("robot.par");
     fs::write(&file, [0_u8, 159, 146, 150]).expect("a file");
     let errors = import(&file, &Options::default()).expect_err("no text");
-    let said = errors.0[0].1.iter().map(|error| error.message.clone());
-    assert!(said.collect::<String>().contains("can't be read"));
+    let message = errors.0[0].1.iter().map(|error| error.message.clone());
+    assert!(message.collect::<String>().contains("can't be read"));
 }
 
 #[test]
-fn axes_of_any_length_have_the_direction_of_short_ones() {
+fn huge_axes_are_normalised() {
     let model = |axis: &str| {
         let text =
             two_links("revolute", "").replace("</joint>", &format!("<axis xyz='{axis}'/></joint>"));
@@ -236,13 +242,13 @@ fn axes_of_any_length_have_the_direction_of_short_ones() {
 }
 
 #[test]
-fn numbers_and_robots_out_of_bounds_are_refused() {
+fn out_of_range_numbers_and_sizes_are_rejected() {
     let text = two_links("revolute", "");
     let far = text.replace("<mass", "<origin xyz='1e200 0 0'/><mass");
-    let said = refused("robot.urdf", &far);
+    let message = refused("robot.urdf", &far);
     assert!(
-        said.starts_with("3: `b` has a number beyond 1e15"),
-        "{said}"
+        message.starts_with("3: `b` has a number beyond 1e15"),
+        "{message}"
     );
     let placed = text.replace("</joint>", "<origin xyz='0 0 -1e100'/></joint>");
     assert!(refused("robot.urdf", &placed).contains("`b` has a number beyond"));
@@ -263,25 +269,29 @@ fn numbers_and_robots_out_of_bounds_are_refused() {
 }
 
 #[test]
-fn a_joint_that_follows_with_the_factor_zero_is_refused() {
+fn a_coupling_factor_of_zero_is_rejected() {
     let more = "<link name='c'/><joint name='k' type='revolute'><parent link='b'/><child link='c'/>\n<mimic joint='j' multiplier='0'/></joint>";
-    let said = refused("robot.urdf", &two_links("revolute", more));
+    let message = refused("robot.urdf", &two_links("revolute", more));
     assert!(
-        said.starts_with("6: the joint `k` is coupled to another with the factor 0"),
-        "{said}"
+        message.starts_with("6: the joint `k` is coupled to another with the factor 0"),
+        "{message}"
     );
 }
 
 #[test]
-fn what_is_nested_without_end_is_refused() {
+fn deeply_nested_expressions_and_attributes_are_rejected() {
     let table = "NL = 1\nNJ = 1\nNF = 1\nant = {0}\nsigma = {0}\nb = {0}\nd = {0}\nr = {0}\ngamma = {0}\ntheta = {t1}\n";
     for deep in [
         "1^".repeat(100_000),
         "(".repeat(100_000),
         "sin(".repeat(100_000),
     ] {
-        let said = refused("robot.par", &format!("{table}alpha = {{{deep}1}}\n"));
-        assert!(said.contains("is not an expression"), "{}", &said[..200]);
+        let message = refused("robot.par", &format!("{table}alpha = {{{deep}1}}\n"));
+        assert!(
+            message.contains("is not an expression"),
+            "{}",
+            &message[..200]
+        );
     }
     let folder = tempfile::tempdir().expect("a folder");
     let bodies = |inside: &str| {
@@ -294,8 +304,8 @@ fn what_is_nested_without_end_is_refused() {
     let errors = import(&file, &Options::default()).expect_err("too deep");
     assert!(format!("{errors:?}").contains("more than 400 deep"));
     let attributes: String = (0..10_000).map(|at| format!(" a{at}=''")).collect();
-    let said = refused("robot.urdf", &format!("<robot{attributes}/>"));
-    assert!(said.contains("more than 5000 attributes"), "{said}");
+    let message = refused("robot.urdf", &format!("<robot{attributes}/>"));
+    assert!(message.contains("more than 5000 attributes"), "{message}");
 }
 
 #[cfg(unix)]
@@ -306,14 +316,14 @@ fn only_regular_files_are_included() {
         ..Options::default()
     };
     for device in ["/dev/zero", "."] {
-        let said = refused_with(
+        let message = refused_with(
             "robot.xml",
             &format!("<mujoco>\n<include file='{device}'/></mujoco>"),
             &anywhere,
         );
         assert!(
-            said.starts_with("2: ") && said.contains("not a regular file"),
-            "{said}"
+            message.starts_with("2: ") && message.contains("not a regular file"),
+            "{message}"
         );
     }
 }
@@ -321,7 +331,7 @@ fn only_regular_files_are_included() {
 /// Files outside the robot's folder may be secret; their contents must not be in messages.
 #[cfg(unix)]
 #[test]
-fn files_outside_the_folder_are_included_with_an_option_only() {
+fn files_outside_the_folder_are_included_only_with_an_option() {
     let outer = tempfile::tempdir().expect("a folder");
     let inner = outer.path().join("robot");
     fs::create_dir(&inner).expect("a folder");
@@ -339,9 +349,9 @@ fn files_outside_the_folder_are_included_with_an_option_only() {
         fs::write(&file, format!("<mujoco><include file='{name}'/></mujoco>")).expect("a file");
         let errors = import(&file, &Options::default()).expect_err("a file outside");
         let each = errors.0.iter();
-        let said: String = each.map(|(source, own)| own.render_plain(source)).collect();
-        assert!(said.contains("is outside the folder"), "{said}");
-        assert!(!said.contains("not for others"), "{said}");
+        let message: String = each.map(|(source, own)| own.render_plain(source)).collect();
+        assert!(message.contains("is outside the folder"), "{message}");
+        assert!(!message.contains("not for others"), "{message}");
     }
 }
 
@@ -366,14 +376,14 @@ fn messages_never_show_contents_of_files_outside_the_folder() {
     ];
     for text in contents {
         fs::write(&secret, text).expect("a file");
-        let said = match import(&robot, &anywhere) {
+        let message = match import(&robot, &anywhere) {
             Ok(imported) => format!("{:?}", imported.account),
             Err(errors) => {
                 let each = errors.0.iter();
                 each.map(|(source, own)| own.render_plain(source)).collect()
             }
         };
-        assert!(!said.contains("confidential"), "{said}");
+        assert!(!message.contains("confidential"), "{message}");
     }
     // A YAML file next to a URDF may be a link.
     let urdf = inner.join("robot.urdf");
@@ -382,10 +392,10 @@ fn messages_never_show_contents_of_files_outside_the_folder() {
     fs::write(&secret, "confidential").expect("a file");
     let errors = import(&urdf, &Options::default()).expect_err("no YAML");
     let each = errors.0.iter();
-    let said: String = each.map(|(source, own)| own.render_plain(source)).collect();
+    let message: String = each.map(|(source, own)| own.render_plain(source)).collect();
     assert!(
-        said.contains("contents are not shown") && !said.contains("confidential"),
-        "{said}"
+        message.contains("contents are not shown") && !message.contains("confidential"),
+        "{message}"
     );
 }
 
@@ -429,7 +439,7 @@ fn included_files_are_limited_together() {
 }
 
 #[test]
-fn a_second_frame_may_be_fixed_on_another_one() {
+fn stretched_loops_with_fixed_closure_frames_are_rejected() {
     // A pendulum of two links whose tip is held by two more links; frame 6 is fixed to the body of
     // frame 5.
     let table = |d: &str| {
@@ -440,15 +450,15 @@ fn a_second_frame_may_be_fixed_on_another_one() {
         )
     };
     // The loops are open by less than the tolerance, and then at their full reach.
-    let said = refused("robot.par", &table("{0,0.3,0.6,1.0,0.8,0.2,0.25,0.3,0.1}"));
+    let message = refused("robot.par", &table("{0,0.3,0.6,1.0,0.8,0.2,0.25,0.3,0.1}"));
     assert!(
-        said.starts_with("12: ") && said.contains("can't move"),
-        "{said}"
+        message.starts_with("12: ") && message.contains("can't move"),
+        "{message}"
     );
 }
 
 #[test]
-fn files_of_other_formats_are_told_what_is_read() {
+fn unknown_file_formats_are_rejected_with_the_supported_ones() {
     for (text, expected) in [
         ("", "1: the file is empty"),
         ("\n \n", "1: the file is empty"),
@@ -457,36 +467,36 @@ fn files_of_other_formats_are_told_what_is_read() {
             "1: the file is neither XML nor a .par table",
         ),
     ] {
-        let said = refused("robot.urdf", text);
+        let message = refused("robot.urdf", text);
         assert!(
-            said.starts_with(expected) && said.contains("URDF (<robot>)"),
-            "{said}"
+            message.starts_with(expected) && message.contains("URDF (<robot>)"),
+            "{message}"
         );
     }
 }
 
 #[test]
-fn slips_of_beginners_are_told_with_what_is_right() {
+fn common_mistakes_are_rejected_with_the_correction() {
     let mass = |value: &str| {
         two_links("revolute", "").replace("mass value='1'", &format!("mass value='{value}'"))
     };
     for value in ["1 kg", "0,5"] {
-        let said = refused("robot.urdf", &mass(value));
+        let message = refused("robot.urdf", &mass(value));
         assert!(
-            said.contains("a decimal point, without units"),
-            "{value}: {said}"
+            message.contains("a decimal point, without units"),
+            "{value}: {message}"
         );
     }
-    let said = refused(
+    let message = refused(
         "robot.xml",
         "<mujoco><worldbody><body><joint/><geom type='capsul' size='1 1'/></body></worldbody></mujoco>",
     );
     assert!(
-        said.contains("`capsul` is not a value of `type` of `geom`"),
-        "{said}"
+        message.contains("`capsul` is not a value of `type` of `geom`"),
+        "{message}"
     );
-    let said = refused("two.par", &table("gamma = {0,0}\n", ""));
-    assert!(said.contains("the table has no `GAMMA`"), "{said}");
-    let said = refused("two.par", &table("{0,pi/2}", "{0,90 deg}"));
-    assert!(said.contains("angles in rad"), "{said}");
+    let message = refused("two.par", &table("gamma = {0,0}\n", ""));
+    assert!(message.contains("the table has no `GAMMA`"), "{message}");
+    let message = refused("two.par", &table("{0,pi/2}", "{0,90 deg}"));
+    assert!(message.contains("angles in rad"), "{message}");
 }

@@ -37,19 +37,19 @@ fn shown(errors: &overact_interchange::Errors) -> String {
 const MASS: &str = r#"<inertial pos="0.1 0 0.05" mass="1" diaginertia=".01 .02 .02"/>"#;
 
 /// A planar four-bar whose coupler pin has a given axis, and whose closure is off the plane.
-fn four_bar(axis: &str, beside: f64) -> String {
+fn four_bar(axis: &str, offset: f64) -> String {
     format!(
         r#"<mujoco model="bar"><worldbody>
 <body name="crank">{MASS}<joint name="crank" axis="0 1 0"/>
  <body name="coupler" pos="0 0 .1">{MASS}<joint name="coupler" axis="{axis}"/><site name="p" pos=".3 0 .1"/></body></body>
-<body name="rocker" pos=".3 0 0">{MASS}<joint name="rocker" axis="0 1 0"/><site name="s" pos="0 {beside} .2"/></body>
+<body name="rocker" pos=".3 0 0">{MASS}<joint name="rocker" axis="0 1 0"/><site name="s" pos="0 {offset} .2"/></body>
 </worldbody><equality><connect name="loop" site1="p" site2="s"/></equality>
 <actuator><motor joint="crank"/></actuator></mujoco>"#
     )
 }
 
 #[test]
-fn a_tilted_axis_of_a_planar_loop_is_made_parallel_and_reported() {
+fn tilted_axes_of_planar_loops_are_made_parallel_and_reported() {
     for tilt in [
         "0 1 2e-9", "2e-8 1 0", "5e-8 1 0", "0 1 1e-7", "0 1 3e-7", "0 1 1e-6", "1e-3 1 0",
     ] {
@@ -65,7 +65,7 @@ fn a_tilted_axis_of_a_planar_loop_is_made_parallel_and_reported() {
 }
 
 #[test]
-fn a_closure_off_the_plane_is_shifted_up_to_the_tolerance() {
+fn closures_off_the_plane_are_shifted_within_the_tolerance() {
     let (imported, _) = imported(&four_bar("0 1 0", 3e-4));
     let misfit = &imported.misfits[0];
     assert_eq!(misfit.name, "loop");
@@ -151,7 +151,7 @@ fn home_of(text: &str, joint: &str) -> f64 {
 }
 
 #[test]
-fn the_motor_is_the_coordinate_and_the_keyframe_is_home() {
+fn the_motor_is_the_coordinate_and_the_keyframe_the_home_pose() {
     let key = r#"<keyframe><key name="other" qpos="0 0 0"/><key name="home" qpos="1 -.6 1.5"/></keyframe>"#;
     let (imported, checked) = imported(&four_bar_with("", "", key));
     assert_eq!(checked.mechanism.coordinates(), ["crank"]);
@@ -161,7 +161,7 @@ fn the_motor_is_the_coordinate_and_the_keyframe_is_home() {
 }
 
 #[test]
-fn home_is_within_the_limits_of_the_joints() {
+fn the_home_pose_is_within_the_joint_limits() {
     for (range, sign) in [("0.3 2.8", 1.0), ("-2.8 -0.3", -1.0)] {
         let limited = format!(r#"range="{range}" limited="true""#);
         let text = four_bar_with(r#"range="0.2 1.8" limited="true""#, &limited, "");
@@ -172,7 +172,7 @@ fn home_is_within_the_limits_of_the_joints() {
 }
 
 #[test]
-fn a_slider_crank_is_moved_from_its_dead_centre() {
+fn the_home_of_a_slider_crank_is_moved_off_its_dead_centre() {
     let text = format!(
         r#"<mujoco model="dead"><worldbody>
 <body name="crank">{MASS}<joint name="crank" axis="0 1 0"/>
@@ -188,7 +188,7 @@ fn a_slider_crank_is_moved_from_its_dead_centre() {
 
 /// A plate held by two cranks, as a free body.
 #[test]
-fn a_free_plate_on_two_cranks_is_a_coupler() {
+fn a_free_body_on_two_cranks_becomes_a_coupler() {
     let text = format!(
         r#"<mujoco model="plate"><worldbody>
 <body name="a" pos="-.1 0 0">{MASS}<joint name="a" axis="0 1 0"/></body>
@@ -260,7 +260,7 @@ fn a_free_platform_on_six_legs_has_six_coordinates() {
 }
 
 #[test]
-fn legs_between_two_balls_do_not_spin() {
+fn free_spins_of_legs_between_two_balls_are_removed() {
     let (imported, checked) = imported(&hexapod(r##"<joint name="b#" type="ball"/>"##));
     let mechanism = &checked.mechanism;
     assert_eq!((mechanism.dof(), mechanism.actuated().len()), (6, 6));

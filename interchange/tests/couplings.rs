@@ -48,7 +48,7 @@ fn row(order: &[usize], mimics: [&str; 4]) -> String {
 }
 
 #[test]
-fn mimics_of_mimics_compose_in_any_order_of_the_file() {
+fn urdf_mimic_chains_compose_in_any_file_order() {
     let chain = [
         "",
         "<mimic joint='j1' multiplier='-2' offset='0.25'/>",
@@ -88,7 +88,7 @@ fn hinges(equalities: &[&str]) -> String {
 }
 
 #[test]
-fn equalities_of_mjcf_compose_in_any_order_of_the_file() {
+fn mjcf_equality_chains_compose_in_any_file_order() {
     let chain = [
         "joint1='j4' joint2='j3' polycoef='-1 0.5 0 0 0'",
         "joint1='j3' joint2='j2' polycoef='0.125 1.5 0 0 0'",
@@ -118,7 +118,7 @@ fn equalities_of_mjcf_compose_in_any_order_of_the_file() {
 }
 
 #[test]
-fn mimics_of_sdformat_compose_in_any_order_of_the_file() {
+fn sdformat_mimic_chains_compose_in_any_file_order() {
     let joint = |name: &str, ends: [&str; 2], mimic: &str| {
         format!(
             "<joint name='{name}' type='revolute'><parent>{}</parent><child>{}</child>\
@@ -159,57 +159,57 @@ fn mimics_of_sdformat_compose_in_any_order_of_the_file() {
 }
 
 #[test]
-fn cycles_are_rejected_at_their_first_relation() {
+fn coupling_cycles_are_rejected_at_their_first_relation() {
     let cycle = [
         "<mimic joint='j3'/>",
         "<mimic joint='j1'/>",
         "<mimic joint='j2'/>",
         "<mimic joint='j3'/>",
     ];
-    let said = errors("row.urdf", &row(&[4, 2, 3, 1], cycle));
+    let message = errors("row.urdf", &row(&[4, 2, 3, 1], cycle));
     assert!(
-        said.starts_with("3: joints are coupled in a cycle: `j2`, `j1`, `j3`, `j2`"),
-        "{said}"
+        message.starts_with("3: joints are coupled in a cycle: `j2`, `j1`, `j3`, `j2`"),
+        "{message}"
     );
-    assert_eq!(said.lines().count(), 1, "{said}");
-    let said = errors(
+    assert_eq!(message.lines().count(), 1, "{message}");
+    let message = errors(
         "row.urdf",
         &row(&[1, 2, 3, 4], ["<mimic joint='j1'/>", "", "", ""]),
     );
     assert!(
-        said.starts_with("2: joints are coupled in a cycle: `j1`, `j1`"),
-        "{said}"
+        message.starts_with("2: joints are coupled in a cycle: `j1`, `j1`"),
+        "{message}"
     );
-    let said = errors(
+    let message = errors(
         "row.xml",
         &hinges(&["joint1='j1' joint2='j2'", "joint1='j2' joint2='j1'"]),
     );
     assert!(
-        said.starts_with("3: joints are coupled in a cycle"),
-        "{said}"
+        message.starts_with("3: joints are coupled in a cycle"),
+        "{message}"
     );
 }
 
 #[test]
-fn a_joint_follows_one_other() {
-    let said = errors(
+fn a_joint_coupled_to_two_joints_is_rejected() {
+    let message = errors(
         "row.xml",
         &hinges(&["joint1='j2' joint2='j1'", "joint1='j2' joint2='j3'"]),
     );
     assert!(
-        said.starts_with("4: `j2` is coupled to two joints, `j1` and `j3`"),
-        "{said}"
+        message.starts_with("4: `j2` is coupled to two joints, `j1` and `j3`"),
+        "{message}"
     );
 }
 
 #[test]
-fn curves_of_equalities_are_rejected() {
-    let said = errors(
+fn nonlinear_equalities_are_rejected() {
+    let message = errors(
         "row.xml",
         &hinges(&["joint1='j2' joint2='j1' polycoef='0 1 0.5 0 0'"]),
     );
     assert!(
-        said.starts_with("3: ") && said.contains("polycoef"),
-        "{said}"
+        message.starts_with("3: ") && message.contains("polycoef"),
+        "{message}"
     );
 }

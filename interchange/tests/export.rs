@@ -50,7 +50,7 @@ fn others(values: &BTreeMap<String, f64>) -> BTreeMap<String, f64> {
         .collect()
 }
 
-fn goes_round(name: &str) -> (String, Exported) {
+fn round_trip(name: &str) -> (String, Exported) {
     let folder = tempfile::tempdir().expect("a folder");
     let file = model(name);
     let before = parameters(&file);
@@ -74,8 +74,8 @@ fn goes_round(name: &str) -> (String, Exported) {
 }
 
 #[test]
-fn mjcf_goes_round() {
-    let (text, made) = goes_round("ankle.xml");
+fn mjcf_export_round_trips() {
+    let (text, made) = round_trip("ankle.xml");
     assert!(made.notes.is_empty(), "{:?}", made.notes);
     let pairs = || text.lines().zip(made.text.lines());
     assert_eq!(text.lines().count(), made.text.lines().count());
@@ -105,8 +105,8 @@ fn mjcf_goes_round() {
 }
 
 #[test]
-fn urdf_goes_round() {
-    let (text, made) = goes_round("arm.urdf");
+fn urdf_export_round_trips() {
+    let (text, made) = round_trip("arm.urdf");
     assert!(made.text.contains("rpy=") && text.contains("rpy="));
     let comments = |text: &str| {
         text.lines()
@@ -118,7 +118,7 @@ fn urdf_goes_round() {
 }
 
 #[test]
-fn what_has_no_place_is_told() {
+fn parameters_without_a_place_in_urdf_are_noted() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = model("arm.urdf");
     let mut values = parameters(&file);
@@ -143,21 +143,21 @@ fn what_has_no_place_is_told() {
 }
 
 #[test]
-fn names_that_the_robot_has_not_are_refused() {
+fn unknown_parameter_names_are_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("parameters.toml");
     fs::write(&path, "[parameters]\nm_lift = 1\nm_lyft = 1\n").expect("a file");
     let errors = export(&model("arm.urdf"), &path, &Options::default()).expect_err("a wrong name");
     let (source, errors) = &errors.0[0];
-    let said = errors.render_plain(source);
+    let message = errors.render_plain(source);
     assert!(
-        said.contains("parameters.toml:3") && said.contains("m_lyft"),
-        "{said}"
+        message.contains("parameters.toml:3") && message.contains("m_lyft"),
+        "{message}"
     );
 }
 
 #[test]
-fn included_files_change_where_they_say_it() {
+fn values_of_included_files_are_exported_to_those_files() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("robot.xml");
     fs::write(&file, "<mujoco>\n<include file='parts/arm.xml'/>\n<actuator><motor joint='j'/></actuator></mujoco>").expect("a file");
@@ -183,7 +183,7 @@ fn included_files_change_where_they_say_it() {
 }
 
 /// Exports other values and imports the result: the same parameters.
-fn text_goes_round(text: &str) -> Exported {
+fn text_round_trip(text: &str) -> Exported {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("robot.xml");
     fs::write(&file, text).expect("a file");
@@ -206,19 +206,19 @@ fn text_goes_round(text: &str) -> Exported {
 }
 
 #[test]
-fn inertia_and_friction_of_actuators_and_tendons_are_not_written_twice() {
+fn actuator_and_tendon_values_are_not_exported_twice() {
     let text = "<mujoco><worldbody><body name='a'><joint name='x' axis='0 1 0' armature='0.4' damping='2' frictionloss='3'/>\
         <inertial mass='2' pos='0.1 0 0' diaginertia='1 1 1'/></body>\
         <body name='b'><joint name='y' axis='0 1 0' damping='2'/>\
         <inertial mass='2' pos='0.1 0 0' diaginertia='1 1 1'/></body></worldbody>\
         <tendon><fixed name='t' armature='0.01' damping='0.2' frictionloss='0.3'><joint joint='x' coef='2'/></fixed></tendon>\
         <actuator><motor joint='x' gear='3' armature='0.01' damping='0.02'/><motor joint='y'/></actuator></mujoco>";
-    let made = text_goes_round(text);
+    let made = text_round_trip(text);
     assert!(made.notes.is_empty(), "{:?}", made.notes);
 }
 
 #[test]
-fn less_than_the_inertia_of_the_actuator_is_noted() {
+fn joint_inertia_below_the_actuator_inertia_is_noted() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("robot.xml");
     let text = "<mujoco><worldbody><body name='a'><joint name='x' axis='0 1 0' armature='0.4'/>\
@@ -236,14 +236,14 @@ fn less_than_the_inertia_of_the_actuator_is_noted() {
 }
 
 #[test]
-fn settings_that_change_inertias_and_springs_are_written_out() {
+fn compiler_settings_are_replaced_by_explicit_values() {
     let text = "<mujoco><compiler settotalmass='7' boundmass='0.01'/><worldbody>\
         <body name='a'><joint name='x' axis='0 1 0' springdamper='0.3 0.8'/>\
         <inertial mass='2' pos='0.1 0 0' diaginertia='1 1 1'/>\
         <body name='b' pos='0.2 0 0'><joint name='y' axis='0 1 0'/>\
         <geom type='box' size='0.1 0.2 0.3' pos='0.1 0 0.1'/></body></body></worldbody>\
         <actuator><motor joint='x'/><motor joint='y'/></actuator></mujoco>";
-    let made = text_goes_round(text);
+    let made = text_round_trip(text);
     assert_eq!(made.notes.len(), 2, "{:?}", made.notes);
     assert!(!made.text.contains("settotalmass"), "{}", made.text);
 }

@@ -23,26 +23,26 @@ fn mjcf(more: &str) -> String {
 }
 
 #[test]
-fn many_loop_closures_are_refused() {
+fn too_many_loop_closures_are_rejected() {
     let closures = |count: usize| {
         let all = "<connect body1='b' anchor='0 0 0'/>\n".repeat(count);
         mjcf(&format!(
             "<equality>{all}</equality><actuator><motor joint='j'/></actuator>"
         ))
     };
-    let said = |count| messages(&errors_of(&[("robot.xml", &closures(count))]));
+    let error_messages = |count| messages(&errors_of(&[("robot.xml", &closures(count))]));
     assert_eq!(
-        said(201),
+        error_messages(201),
         ["the robot has 201 loop closures, more than 200"]
     );
     assert_eq!(
-        said(3_000),
+        error_messages(3_000),
         ["the file has 3000 loop closures, more than 2000"]
     );
 }
 
 #[test]
-fn equal_notes_on_many_names_are_counted_together() {
+fn notes_on_many_unknown_names_are_aggregated() {
     let unknown: String = (0..20_000).map(|at| format!("<u{at} a='1'/>\n")).collect();
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("robot.xml");
@@ -80,7 +80,7 @@ fn the_number_of_errors_and_suggestions_is_limited() {
 }
 
 #[test]
-fn includes_that_double_do_not_include_themselves() {
+fn repeated_includes_are_not_mistaken_for_cycles() {
     let twice = |at: usize| {
         format!("<mujoco><include file='{at}.xml'/>\n<include file='{at}.xml'/></mujoco>")
     };
@@ -125,7 +125,7 @@ fn too_many_elements_are_reported_once() {
 /// A pipe without a writer would block whoever opens it.
 #[cfg(unix)]
 #[test]
-fn a_pipe_folder_or_device_is_refused_as_the_input() {
+fn pipes_folders_and_devices_are_rejected_as_input() {
     let folder = tempfile::tempdir().expect("a folder");
     let pipe = folder.path().join("robot.xml");
     let made = std::process::Command::new("mkfifo").arg(&pipe).status();
@@ -137,10 +137,11 @@ fn a_pipe_folder_or_device_is_refused_as_the_input() {
     ];
     for input in inputs {
         let errors = import(input, &Options::default()).expect_err("no file");
-        let said = messages(&errors).concat();
+        let error_messages = messages(&errors).concat();
         assert!(
-            said.contains("can't be read: it is ") && said.ends_with("not a regular file"),
-            "{said}"
+            error_messages.contains("can't be read: it is ")
+                && error_messages.ends_with("not a regular file"),
+            "{error_messages}"
         );
     }
 }
@@ -148,7 +149,7 @@ fn a_pipe_folder_or_device_is_refused_as_the_input() {
 /// As after `overact import <(xacro robot.xacro)`.
 #[cfg(target_os = "linux")]
 #[test]
-fn an_open_pipe_of_the_process_is_read() {
+fn inherited_pipes_are_read() {
     use std::{io::Write, os::fd::AsRawFd};
     let (reader, mut writer) = std::io::pipe().expect("a pipe");
     writer.write_all(mjcf("").as_bytes()).expect("room");

@@ -77,7 +77,7 @@ fn par(line: &str, by: &str) -> String {
 }
 
 #[test]
-fn gravity_of_physics_is_read_up_to_sdformat_1_5_and_reported_later() {
+fn physics_gravity_is_read_until_sdformat_1_5_and_reported_later() {
     let physics = "<physics type='ode'><gravity>0 0 -1.62</gravity><max_step_size>0.1</max_step_size></physics>";
     for version in ["1.4", "1.5"] {
         let text = sdf(version, physics, "", AXIS);
@@ -95,7 +95,7 @@ fn gravity_of_physics_is_read_up_to_sdformat_1_5_and_reported_later() {
 }
 
 #[test]
-fn the_gravity_flag_of_mjcf_acts_in_any_order() {
+fn the_mjcf_gravity_flag_acts_in_any_order() {
     let (vector, flag) = (
         "<option gravity='0 0 -5'/>",
         "<option><flag gravity='disable'/></option>",
@@ -116,7 +116,7 @@ fn the_gravity_flag_of_mjcf_acts_in_any_order() {
 }
 
 #[test]
-fn contents_of_the_mujoco_extension_of_urdf_are_reported() {
+fn contents_of_the_urdf_mujoco_extension_are_reported() {
     let more = "<mujoco><compiler meshdir='m' balanceinertia='true' inertiafromgeom='auto' foo='1'/>\n\
         <option gravity='0 0 -1.62' timestep='0.1' density='0'><flag gravity='disable' contact='disable'/></option>\n\
         <actuator/></mujoco>";
@@ -154,7 +154,7 @@ fn empty_text_is_neutral_only_without_attributes_and_children() {
 }
 
 #[test]
-fn a_second_element_of_a_kind_is_refused_at_its_line() {
+fn duplicate_elements_are_rejected_at_their_line() {
     let twice = |text: &str| format!("{text}\n{text}");
     for (text, expected) in [
         (
@@ -190,8 +190,8 @@ fn a_second_element_of_a_kind_is_refused_at_its_line() {
             "5: <joint> has a second <dynamics>",
         ),
     ] {
-        let said = refused("r.urdf", &text);
-        assert!(said.starts_with(expected), "{said}");
+        let message = refused("r.urdf", &text);
+        assert!(message.starts_with(expected), "{message}");
     }
     for (text, expected) in [
         (
@@ -216,24 +216,24 @@ fn a_second_element_of_a_kind_is_refused_at_its_line() {
             "2: <world> has a second <gravity>",
         ),
     ] {
-        let said = refused("r.sdf", &text);
-        assert!(said.starts_with(expected), "{said}");
+        let message = refused("r.sdf", &text);
+        assert!(message.starts_with(expected), "{message}");
     }
-    let said = refused("r.xml", &mjcf("", &twice(INERTIAL)));
+    let message = refused("r.xml", &mjcf("", &twice(INERTIAL)));
     assert!(
-        said.starts_with("4: <body> has a second <inertial>"),
-        "{said}"
+        message.starts_with("4: <body> has a second <inertial>"),
+        "{message}"
     );
     let framed = format!("{INERTIAL}\n<frame>{INERTIAL}</frame>");
-    let said = refused("r.xml", &mjcf("", &framed));
+    let message = refused("r.xml", &mjcf("", &framed));
     assert!(
-        said.starts_with("4: a body has a second <inertial>"),
-        "{said}"
+        message.starts_with("4: a body has a second <inertial>"),
+        "{message}"
     );
 }
 
 #[test]
-fn booleans_of_sdformat_have_capitals_and_those_of_mjcf_do_not() {
+fn sdformat_booleans_may_be_capitalised_and_mjcf_booleans_not() {
     let turned = |word: &str| {
         sdf(
             "1.9",
@@ -249,20 +249,20 @@ fn booleans_of_sdformat_have_capitals_and_those_of_mjcf_do_not() {
             expected
         );
     }
-    let said = refused("r.sdf", &turned("yes"));
+    let message = refused("r.sdf", &turned("yes"));
     assert!(
-        said.starts_with("3: `yes` is neither true nor false"),
-        "{said}"
+        message.starts_with("3: `yes` is neither true nor false"),
+        "{message}"
     );
-    let said = refused("r.xml", &mjcf("", "<geom size='0.1' shellinertia='True'/>"));
+    let message = refused("r.xml", &mjcf("", "<geom size='0.1' shellinertia='True'/>"));
     assert!(
-        said.starts_with("3: `True` is not a value of `shellinertia`"),
-        "{said}"
+        message.starts_with("3: `True` is not a value of `shellinertia`"),
+        "{message}"
     );
 }
 
 #[test]
-fn keys_of_par_may_be_in_small_letters_and_further_values_are_reported() {
+fn par_keys_ignore_case_and_extra_values_are_reported() {
     let text = par("NL", "NL").to_lowercase();
     assert!(read("r.par", &text).is_ok());
     assert_eq!(
@@ -276,16 +276,16 @@ fn keys_of_par_may_be_in_small_letters_and_further_values_are_reported() {
 }
 
 #[test]
-fn positions_of_par_that_are_not_linear_are_refused() {
-    let said = refused("r.par", &par("{t1,t2}", "{t1,sin(t1)}"));
+fn nonlinear_par_positions_are_rejected() {
+    let message = refused("r.par", &par("{t1,t2}", "{t1,sin(t1)}"));
     assert!(
-        said.starts_with("11: the position of joint 2 is `sin(t1)`, which is not linear"),
-        "{said}"
+        message.starts_with("11: the position of joint 2 is `sin(t1)`, which is not linear"),
+        "{message}"
     );
 }
 
 #[test]
-fn height_fields_on_bodies_have_an_unknown_inertia() {
+fn height_fields_are_reported_as_unknown_inertia() {
     let field = |mass: &str| {
         mjcf(
             "<asset><hfield name='h' nrow='2' ncol='2' size='1 1 1 1'/></asset>",
@@ -297,7 +297,7 @@ fn height_fields_on_bodies_have_an_unknown_inertia() {
 }
 
 #[test]
-fn text_and_absent_values_are_reported() {
+fn unexpected_text_and_missing_values_are_reported() {
     let link = "<inertial><mass>2</mass><inertia ixx='1' iyy='1'/></inertial>";
     let found = reported("r.urdf", &urdf(link, "<axis/>", ""));
     for expected in ["2: mass", "2: mass value", "2: inertia izz", "4: axis xyz"] {
@@ -316,7 +316,7 @@ fn text_and_absent_values_are_reported() {
 }
 
 #[test]
-fn negative_masses_are_refused_at_their_line() {
+fn negative_masses_are_rejected_at_their_line() {
     for (name, text, line) in [
         ("r.xml", mjcf("", &INERTIAL.replace("'1'", "'-1'")), 3),
         ("r.xml", mjcf("", "<geom size='0.1' mass='-1'/>"), 3),
@@ -332,14 +332,14 @@ fn negative_masses_are_refused_at_their_line() {
         ),
         ("r.par", par("M = {1,1}", "M = {1,-1}"), 15),
     ] {
-        let said = refused(name, &text);
+        let message = refused(name, &text);
         assert!(
-            said.starts_with(&format!("{line}: a mass is negative")),
-            "{said}"
+            message.starts_with(&format!("{line}: a mass is negative")),
+            "{message}"
         );
     }
-    let said = refused("r.xml", &mjcf("", "<geom size='0.1' density='-1'/>"));
-    assert!(said.starts_with("3: a density is negative"), "{said}");
+    let message = refused("r.xml", &mjcf("", "<geom size='0.1' density='-1'/>"));
+    assert!(message.starts_with("3: a density is negative"), "{message}");
 }
 
 #[test]
@@ -376,14 +376,14 @@ fn impossible_inertias_are_kept_and_reported_with_their_body() {
 }
 
 #[test]
-fn macros_of_xacro_are_refused_at_the_first_one() {
+fn xacro_files_are_rejected_at_their_first_macro() {
     let text = |more: &str| {
         urdf(URDF_INERTIAL, "", more).replace(
             "<robot",
             "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'",
         )
     };
-    let said = refused("r.urdf", &text("<xacro:property name='l' value='1'/>"));
-    assert!(said.starts_with("5: this is a xacro file"), "{said}");
+    let message = refused("r.urdf", &text("<xacro:property name='l' value='1'/>"));
+    assert!(message.starts_with("5: this is a xacro file"), "{message}");
     assert!(read("r.urdf", &text("<!-- <xacro:arm/> -->")).is_ok());
 }

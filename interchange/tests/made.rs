@@ -21,7 +21,7 @@ fn made(name: &str, options: &Options) -> (String, overact_codegen::Checked) {
 }
 
 #[test]
-fn a_tree_of_urdf_is_an_arm() {
+fn a_urdf_tree_becomes_a_serial_arm() {
     let (text, checked) = made("arm.urdf", &Options::default());
     let mechanism = &checked.mechanism;
     assert!(mechanism.is_tree());
@@ -40,7 +40,7 @@ fn a_tree_of_urdf_is_an_arm() {
 }
 
 #[test]
-fn loops_of_mjcf_are_chains_on_a_skeleton() {
+fn mjcf_loops_become_chains_on_a_skeleton() {
     let (text, checked) = made("ankle.xml", &Options::default());
     let mechanism = &checked.mechanism;
     assert_eq!(
@@ -58,7 +58,7 @@ fn loops_of_mjcf_are_chains_on_a_skeleton() {
 }
 
 #[test]
-fn a_body_of_a_chain_that_carries_a_motor_has_a_branch() {
+fn a_motor_on_a_chain_body_becomes_a_branch() {
     let (text, checked) = made("leg.xml", &Options::default());
     let mechanism = &checked.mechanism;
     assert_eq!((mechanism.dof(), mechanism.actuated().len()), (3, 3));
@@ -88,7 +88,7 @@ fn of_table() -> Options {
 }
 
 #[test]
-fn a_table_of_opensymoro_closes_its_loops() {
+fn opensymoro_tables_with_loops_are_imported() {
     let (text, checked) = made("arm.par", &of_table());
     let mechanism = &checked.mechanism;
     assert_eq!(
@@ -112,7 +112,7 @@ fn a_table_of_opensymoro_closes_its_loops() {
 }
 
 #[test]
-fn every_robot_has_runs_inside_the_limits_of_its_joints() {
+fn imported_runs_stay_within_the_joint_limits() {
     for (name, coordinates) in [("arm.urdf", 4), ("ankle.xml", 2)] {
         let (text, checked) = made(name, &Options::default());
         let experiment = checked.description.experiment.expect("an experiment");
@@ -141,7 +141,7 @@ fn every_robot_has_runs_inside_the_limits_of_its_joints() {
 }
 
 #[test]
-fn a_joint_that_follows_keeps_its_constant() {
+fn coupled_joints_keep_their_offset() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = |offset: &str| {
         let link = |name: &str| {

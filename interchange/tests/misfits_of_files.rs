@@ -43,7 +43,7 @@ fn bar(equality: &str, more: &str) -> String {
 }
 
 #[test]
-fn a_keyframe_that_does_not_fit_the_joints_is_reported() {
+fn mismatched_keyframes_are_reported() {
     let with = |positions: &str| {
         let key = format!(r#"<keyframe><key name="home" qpos="{positions}"/></keyframe>"#);
         let found = read_text("robot.xml", &bar("", &key), &Options::default());
@@ -60,7 +60,7 @@ fn a_keyframe_that_does_not_fit_the_joints_is_reported() {
 }
 
 #[test]
-fn a_keyframe_of_a_fixed_base_starts_after_its_seven_numbers() {
+fn keyframes_skip_the_coordinates_of_a_fixed_base() {
     let text = format!(
         r#"<mujoco model="bar"><compiler angle="radian"/><worldbody><body name="base"><freejoint/>{MASS}
 <body name="crank">{MASS}<joint name="crank" axis="0 -1 0"/>
@@ -80,7 +80,7 @@ fn a_keyframe_of_a_fixed_base_starts_after_its_seven_numbers() {
 }
 
 #[test]
-fn a_closure_of_one_body_is_reported_or_an_error() {
+fn closures_within_one_body_are_reported_or_rejected() {
     let same = r#"<connect name="own" body1="rocker" body2="rocker" anchor="0 0 .1"/>"#;
     let found = read_text("robot.xml", &bar(same, ""), &Options::default()).expect("a robot");
     let found = reports(&found);
@@ -103,7 +103,7 @@ const ARM: &str = "<robot name='r'><link name='a'/><link name='b'><inertial><mas
      <joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint></robot>";
 
 #[test]
-fn a_yaml_name_that_is_a_folder_or_a_pipe_is_an_error() {
+fn a_yaml_path_that_is_a_folder_or_pipe_is_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
     let (path, yaml) = (
         folder.path().join("robot.urdf"),
@@ -129,7 +129,7 @@ fn a_yaml_name_that_is_a_folder_or_a_pipe_is_an_error() {
 }
 
 #[test]
-fn meshes_outside_the_folder_are_read_with_an_option_only() {
+fn meshes_outside_the_folder_are_read_only_with_an_option() {
     let folder = tempfile::tempdir().expect("a folder");
     let inner = folder.path().join("inner");
     std::fs::create_dir(&inner).expect("a folder");
@@ -156,7 +156,7 @@ fn meshes_outside_the_folder_are_read_with_an_option_only() {
 }
 
 #[test]
-fn counts_of_a_table_that_do_not_match_are_named() {
+fn inconsistent_par_counts_are_rejected() {
     let table = |links: usize, joints: usize, frames: usize| {
         let text = format!("NL = {links}\nNJ = {joints}\nNF = {frames}\n");
         read_text("robot.par", &text, &Options::default()).expect_err("an error")
@@ -178,7 +178,7 @@ fn counts_of_a_table_that_do_not_match_are_named() {
 }
 
 #[test]
-fn hollow_shapes_have_the_inertia_of_mujoco() {
+fn hollow_shape_inertias_match_mujoco() {
     // Masses and largest moments of MuJoCo 4.0 for a surface density of 7 kg/m^2.
     let shapes = [
         ("sphere", ".1", 0.8796459430051422, 0.005864306286700948),

@@ -75,7 +75,7 @@ const ROLES: &str = "<actuator name='left'><role>actuator1</role><mechanicalRedu
     <joint name='roll'><role>joint2</role><mechanicalReduction>3</mechanicalReduction></joint>";
 
 #[test]
-fn transmissions_of_two_joints_are_motors_of_both() {
+fn two_joint_transmissions_become_coupled_motors() {
     let differential =
         format!("<type>transmission_interface/DifferentialTransmission</type>{ROLES}");
     let found = imported("wrist.urdf", &wrist(&differential));
@@ -110,7 +110,7 @@ fn transmissions_of_two_joints_are_motors_of_both() {
 }
 
 #[test]
-fn transmissions_that_are_incomplete_are_refused() {
+fn incomplete_transmissions_are_rejected() {
     for (from, to, expected) in [
         (
             "joint2",
@@ -130,13 +130,13 @@ fn transmissions_that_are_incomplete_are_refused() {
     ] {
         let text = format!("<type>transmission_interface/DifferentialTransmission</type>{ROLES}");
         assert!(text.contains(from));
-        let said = refused("wrist.urdf", &wrist(&text.replacen(from, to, 1)));
-        assert!(said.starts_with(&format!("2: {expected}")), "{said}");
+        let message = refused("wrist.urdf", &wrist(&text.replacen(from, to, 1)));
+        assert!(message.starts_with(&format!("2: {expected}")), "{message}");
     }
 }
 
 #[test]
-fn rotors_of_drake_become_inertias_of_joints_and_motors() {
+fn drake_rotors_become_joint_and_motor_inertias() {
     let rotor = "<drake:rotor_inertia value='0.001'/><drake:gear_ratio value='30'/>";
     let single = format!("<joint name='pitch'/><actuator name='m'>{rotor}</actuator>");
     let found = imported("wrist.urdf", &wrist(&single));
@@ -168,7 +168,7 @@ fn tendon(attributes: &str) -> String {
 }
 
 #[test]
-fn a_motor_at_a_fixed_tendon_turns_its_joints() {
+fn a_fixed_tendon_motor_drives_its_joints() {
     let more = tendon("damping='0.2' armature='0.01'")
         + "<actuator><motor joint='j1' gear='7'/><motor name='m' tendon='t' gear='10' armature='0.001'/></actuator>";
     let found = imported("row.xml", &hinges(&more));
@@ -194,7 +194,7 @@ fn a_motor_at_a_fixed_tendon_turns_its_joints() {
 }
 
 #[test]
-fn a_motor_at_a_tendon_of_coupled_joints_is_that_of_one_joint() {
+fn a_tendon_motor_of_coupled_joints_becomes_a_joint_motor() {
     let coupling = "<equality><joint joint1='j3' joint2='j2' polycoef='0 2'/></equality>";
     let more = tendon("frictionloss='0.1'").replace("-0.5", "0.5")
         + coupling
@@ -208,7 +208,7 @@ fn a_motor_at_a_tendon_of_coupled_joints_is_that_of_one_joint() {
 }
 
 #[test]
-fn an_equality_of_tendons_couples_two_joints() {
+fn tendon_equalities_couple_two_joints() {
     let motor = "<actuator><motor joint='j1'/><motor joint='j2'/></actuator>";
     let both = "<tendon><fixed name='s'><joint joint='j3' coef='2'/></fixed>\
         <fixed name='t'><joint joint='j2' coef='3'/></fixed></tendon>";
@@ -230,12 +230,12 @@ fn an_equality_of_tendons_couples_two_joints() {
             "<fixed name='s'><joint joint='j1' coef='1'/></fixed></tendon>"
         )
     );
-    let said = refused("row.xml", &hinges(&three));
-    assert!(said.contains("does not couple two joints"), "{said}");
+    let message = refused("row.xml", &hinges(&three));
+    assert!(message.contains("does not couple two joints"), "{message}");
 }
 
 #[test]
-fn tendons_that_exert_forces_are_refused_and_others_reported() {
+fn tendons_with_forces_are_rejected_and_others_reported() {
     let motor = "<actuator><motor joint='j1'/></actuator>";
     for attributes in [
         "stiffness='3'",
@@ -243,12 +243,12 @@ fn tendons_that_exert_forces_are_refused_and_others_reported() {
         "frictionloss='3'",
         "armature='3'",
     ] {
-        let said = refused("row.xml", &hinges(&(tendon(attributes) + motor)));
-        assert!(said.starts_with("2: the "), "{said}");
+        let message = refused("row.xml", &hinges(&(tendon(attributes) + motor)));
+        assert!(message.starts_with("2: the "), "{message}");
         let path =
             format!("<tendon><spatial {attributes}><site site='s'/></spatial></tendon>{motor}");
-        let said = refused("row.xml", &hinges(&path));
-        assert!(said.starts_with("2: the "), "{said}");
+        let message = refused("row.xml", &hinges(&path));
+        assert!(message.starts_with("2: the "), "{message}");
     }
     let limited = tendon("range='-1 1' limited='true'") + motor;
     let found = imported("row.xml", &hinges(&limited));
@@ -260,17 +260,17 @@ fn tendons_that_exert_forces_are_refused_and_others_reported() {
         .collect();
     assert_eq!(reported, ["fixed"]);
     let pulled = "<tendon><spatial name='t'/></tendon><actuator><motor tendon='t'/></actuator>";
-    let said = refused("row.xml", &hinges(pulled));
-    assert!(said.contains("pulls at a spatial tendon"), "{said}");
-    let said = refused(
+    let message = refused("row.xml", &hinges(pulled));
+    assert!(message.contains("pulls at a spatial tendon"), "{message}");
+    let message = refused(
         "row.xml",
         &hinges("<actuator><motor tendon='t'/></actuator>"),
     );
-    assert!(said.contains("there is no tendon `t`"), "{said}");
+    assert!(message.contains("there is no tendon `t`"), "{message}");
 }
 
 #[test]
-fn damping_of_a_tendon_of_one_joint_is_that_of_the_joint() {
+fn single_joint_tendons_add_to_the_joint_parameters() {
     let one = "<tendon><fixed damping='0.5' frictionloss='0.25' armature='0.1'><joint joint='j2' coef='-2'/></fixed></tendon>\
         <actuator><motor joint='j1'/></actuator>";
     let found = imported("row.xml", &hinges(one));
@@ -280,7 +280,7 @@ fn damping_of_a_tendon_of_one_joint_is_that_of_the_joint() {
 }
 
 #[test]
-fn a_driven_joint_leads_the_joints_that_it_is_coupled_to() {
+fn driven_joints_lead_their_coupled_joints() {
     let motors = "<actuator><motor joint='j1'/><motor joint='j3'/></actuator>";
     let coupled =
         |relation: &str| hinges(&format!("<equality><joint {relation}/></equality>{motors}"));
@@ -297,7 +297,7 @@ fn a_driven_joint_leads_the_joints_that_it_is_coupled_to() {
 }
 
 #[test]
-fn motors_of_several_joints_are_kept_in_robots_with_loops() {
+fn coupled_motors_are_kept_in_closed_loop_robots() {
     let more = "<equality><connect body1='b3' anchor='0.2 0 0'/></equality>".to_owned()
         + &tendon("")
         + "<actuator><motor name='belt' tendon='t' armature='0.2'/></actuator>";
@@ -319,7 +319,7 @@ fn motors_of_several_joints_are_kept_in_robots_with_loops() {
 }
 
 #[test]
-fn equal_compensation_of_all_weights_scales_gravity() {
+fn uniform_gravity_compensation_scales_gravity() {
     let row = |second: &str, joints: &str| {
         let text = hinges("<actuator><motor joint='j1'/></actuator>");
         let text = text.replace("<joint ", &format!("<joint {joints} "));

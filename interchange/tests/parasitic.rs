@@ -50,7 +50,7 @@ fn written(folder: &Path, text: &str) -> std::path::PathBuf {
 }
 
 #[test]
-fn a_3_rps_is_a_platform_with_three_independent_coordinates() {
+fn a_3_rps_has_three_independent_coordinates() {
     let third = std::f64::consts::TAU / 3.0;
     for angles in [[0.0, third, 2.0 * third], [0.1, 2.0, 4.4]] {
         let folder = tempfile::tempdir().expect("a folder");
@@ -77,7 +77,7 @@ fn a_3_rps_is_a_platform_with_three_independent_coordinates() {
 }
 
 #[test]
-fn a_wrist_on_such_a_platform_is_rejected_with_a_way_out() {
+fn a_wrist_on_a_platform_with_parasitic_motion_is_rejected() {
     let wrist = format!(r#"<body name="wrist">{MASS}<joint name="wrist" axis="0 0 1"/></body>"#);
     let folder = tempfile::tempdir().expect("a folder");
     let text = three_legs([0.0, 2.1, 4.2], &wrist);
@@ -85,11 +85,11 @@ fn a_wrist_on_such_a_platform_is_rejected_with_a_way_out() {
     let path = written(folder.path(), &text);
     let errors = import(&path, &Options::default()).expect_err("a file that is rejected");
     let each = errors.0.iter();
-    let said: String = each
+    let message: String = each
         .map(|(source, errors)| errors.render_plain(source))
         .collect();
     assert!(
-        said.contains("robot.xml:") && said.contains("`independent`"),
-        "{said}"
+        message.contains("robot.xml:") && message.contains("`independent`"),
+        "{message}"
     );
 }

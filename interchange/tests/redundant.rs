@@ -42,7 +42,7 @@ fn misfit(imported: &Imported) -> f64 {
 
 /// Accepts a mechanism of one degree of freedom, whose changes are near a given size.
 #[track_caller]
-fn moves(text: &str, error: f64) {
+fn assert_one_degree_of_freedom(text: &str, error: f64) {
     let (imported, checked) = accepted(text);
     assert_eq!(checked.mechanism.dof(), 1);
     let misfit = misfit(&imported);
@@ -76,7 +76,7 @@ fn three_cranks(error: f64) -> String {
 #[test]
 fn a_parallelogram_with_three_cranks_moves_with_rounded_lengths() {
     for error in [0.0, 1e-6, 3e-4] {
-        moves(&three_cranks(error), error);
+        assert_one_degree_of_freedom(&three_cranks(error), error);
     }
     let errors = read(&three_cranks(1e-2), None).expect_err("a loop that does not move");
     assert!(messages(&errors).contains("robot.xml:"));
@@ -98,27 +98,27 @@ fn trammel(error: f64, tilt: f64) -> String {
 
 #[test]
 fn a_trammel_with_a_crank_moves_with_rounded_lengths_and_tilted_slides() {
-    moves(&trammel(0.0, 0.0), 0.0);
-    moves(&trammel(1e-4, 0.0), 1e-4);
-    moves(&trammel(0.0, 1e-4), 1e-4);
-    moves(&trammel(1e-4, 2e-4), 2e-4);
+    assert_one_degree_of_freedom(&trammel(0.0, 0.0), 0.0);
+    assert_one_degree_of_freedom(&trammel(1e-4, 0.0), 1e-4);
+    assert_one_degree_of_freedom(&trammel(0.0, 1e-4), 1e-4);
+    assert_one_degree_of_freedom(&trammel(1e-4, 2e-4), 2e-4);
 }
 
 #[test]
 fn a_scotch_yoke_moves_with_tilted_slides_and_a_block_off_the_plane() {
-    let yoke = |tilt: f64, aside: f64| {
+    let yoke = |tilt: f64, offset: f64| {
         format!(
             r#"<mujoco model="yoke"><worldbody>
 <body name="crank">{MASS}<joint name="crank" axis="0 1 0"/><site name="pin" pos=".05 0 .06"/></body>
 <body name="yoke" pos=".05 0 0">{MASS}<joint name="yoke" type="slide" axis="1 {tilt} 0"/>
- <body name="block" pos="0 {aside} .06">{MASS}<joint name="slot" type="slide" axis="0 {tilt} 1"/><site name="bore"/></body></body>
+ <body name="block" pos="0 {offset} .06">{MASS}<joint name="slot" type="slide" axis="0 {tilt} 1"/><site name="bore"/></body></body>
 </worldbody><equality><connect site1="pin" site2="bore"/></equality><actuator><motor joint="crank"/></actuator></mujoco>"#
         )
     };
-    moves(&yoke(0.0, 0.0), 0.0);
-    moves(&yoke(3e-4, 0.0), 3e-4);
-    moves(&yoke(0.0, 1e-4), 1e-4);
-    moves(&yoke(3e-4, 1e-4), 3e-4);
+    assert_one_degree_of_freedom(&yoke(0.0, 0.0), 0.0);
+    assert_one_degree_of_freedom(&yoke(3e-4, 0.0), 3e-4);
+    assert_one_degree_of_freedom(&yoke(0.0, 1e-4), 1e-4);
+    assert_one_degree_of_freedom(&yoke(3e-4, 1e-4), 3e-4);
 }
 
 /// A Delta with six rods between balls; one rod's lower end is displaced by an error.
@@ -179,7 +179,7 @@ fn the_platform_of_a_delta_translates_if_its_rods_are_rounded() {
 }
 
 #[test]
-fn a_point_in_a_planar_loop_is_a_pin() {
+fn a_point_closure_in_a_planar_loop_is_a_pin() {
     // A chain through the closing point: a pin is one joint, and a ball would be three.
     let text = format!(
         r#"<mujoco model="bar"><worldbody><body name="crank">{MASS}<joint name="crank" axis="0 1 0"/>
@@ -194,7 +194,7 @@ fn a_point_in_a_planar_loop_is_a_pin() {
 }
 
 #[test]
-fn two_points_between_two_bodies_are_a_pin_and_three_a_frame() {
+fn two_point_closures_form_a_pin_and_three_a_rigid_joint() {
     let bar = |points: &[[f64; 3]], error: f64| {
         let (mut first, mut second, mut closures) = (String::new(), String::new(), String::new());
         for (at, [x, y, z]) in points.iter().enumerate() {

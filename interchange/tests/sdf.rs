@@ -15,15 +15,17 @@ fn model(name: &str) -> PathBuf {
 
 /// Text of the description and result of its check.
 fn made(path: &Path, options: &Options) -> (String, Checked) {
-    let said = |errors: overact_interchange::Errors| {
+    let error_text = |errors: overact_interchange::Errors| {
         let all = errors.0.iter();
         let texts: Vec<String> = all
             .map(|(source, errors)| errors.render_plain(source))
             .collect();
         texts.concat()
     };
-    let imported = import(path, options).map_err(said);
-    let text = imported.unwrap_or_else(|said| panic!("{said}")).text;
+    let imported = import(path, options).map_err(error_text);
+    let text = imported
+        .unwrap_or_else(|error_text| panic!("{error_text}"))
+        .text;
     let source = Source::new("made.toml", text.clone());
     match check(&source) {
         Ok(checked) => (text, checked),
@@ -53,7 +55,7 @@ fn driven(names: &[&str]) -> Options {
 }
 
 #[test]
-fn the_arm_is_that_of_urdf() {
+fn sdformat_and_urdf_give_the_same_arm() {
     let (urdf, _) = made(&model("arm.urdf"), &Options::default());
     let (sdf, _) = made(&model("arm.sdf"), &Options::default());
     let sdf = sdf.replace("hand__grip", "grip");
@@ -81,7 +83,7 @@ fn the_arm_is_that_of_urdf() {
 }
 
 #[test]
-fn a_five_bar_closes_by_its_own_joints() {
+fn sdformat_loops_are_closed_by_their_joints() {
     let (text, checked) = made(
         &model("five_bar.sdf"),
         &driven(&["left_motor", "right_motor"]),
@@ -110,7 +112,8 @@ fn a_five_bar_closes_by_its_own_joints() {
     assert!(text.contains("d = 0.2\n"), "{text}");
     // Without motor names, the actuated joints of a loop are unknown.
     assert!(
-        said(&fs::read_to_string(model("five_bar.sdf")).expect("a file")).contains("--actuated")
+        error_text(&fs::read_to_string(model("five_bar.sdf")).expect("a file"))
+            .contains("--actuated")
     );
 }
 
@@ -125,7 +128,7 @@ fn one_joint(kind: &str, inside: &str, more: &str) -> String {
 const Z: &str = "<axis><xyz>0 0 1</xyz></axis>";
 
 #[test]
-fn joints_of_two_axes_are_two() {
+fn two_axis_joints_become_two_joints() {
     let two = "<axis><xyz>1 0 0</xyz><dynamics><damping>0.5</damping></dynamics></axis><axis2><xyz>0 1 0</xyz></axis2>";
     for kind in ["universal", "revolute2"] {
         let (text, checked) = written(&one_joint(kind, two, ""), &Options::default());
@@ -141,7 +144,7 @@ fn joints_of_two_axes_are_two() {
     }
     // A ball joint has no motor; it is allowed in loops only.
     let ball = one_joint("ball", "", "");
-    assert!(said(&ball).starts_with("5: the ball joint `j`"));
+    assert!(error_text(&ball).starts_with("5: the ball joint `j`"));
     let five_bar = fs::read_to_string(model("five_bar.sdf")).expect("a file");
     let tip = "name=\"tip\" type=\"revolute\"";
     assert!(five_bar.contains(tip));
@@ -151,7 +154,7 @@ fn joints_of_two_axes_are_two() {
 }
 
 #[test]
-fn a_screw_is_a_helical_joint() {
+fn screw_joints_become_helical_joints() {
     let screw = |pitch: &str| {
         let inside = format!(
             "<axis><xyz>0 0 1</xyz><dynamics><damping>0.5</damping></dynamics></axis>{pitch}"
@@ -189,7 +192,7 @@ fn a_screw_is_a_helical_joint() {
 }
 
 #[test]
-fn axes_follow_axes() {
+fn mimics_and_gearboxes_couple_axes() {
     let mimic = |joint: &str| {
         format!(
             "<link name='b'><pose relative_to='a'/></link><joint name='k' type='prismatic'><parent>a</parent><child>b</child>\
@@ -203,10 +206,10 @@ fn axes_follow_axes() {
     assert!(text.contains("r = \"0.25 m/rad * q_j\""), "{text}");
     assert!(text.contains("mz_k = 0.05\n"), "{text}");
     assert!(
-        said(&one_joint("revolute", Z, &mimic("l")))
+        error_text(&one_joint("revolute", Z, &mimic("l")))
             .contains("no axis `axis` of a joint `l` to couple to")
     );
-    assert!(said(&one_joint("revolute", Z, &mimic("k"))).contains("in a cycle: `k`, `k`"));
+    assert!(error_text(&one_joint("revolute", Z, &mimic("k"))).contains("in a cycle: `k`, `k`"));
     let gears = |reference: &str| {
         format!(
             "<link name='b'/><link name='c'/>\
@@ -225,13 +228,13 @@ fn axes_follow_axes() {
         "{text}"
     );
     assert!(
-        said(&one_joint("revolute", Z, &gears("b")))
+        error_text(&one_joint("revolute", Z, &gears("b")))
             .contains("the gearbox `g` needs a revolute joint")
     );
 }
 
 /// Error messages of a file.
-fn said(text: &str) -> String {
+fn error_text(text: &str) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("robot.sdf");
     fs::write(&file, text).expect("a file");
@@ -249,10 +252,10 @@ fn said(text: &str) -> String {
     all
 }
 
-fn all_are_said(cases: &[(String, &str)]) {
+fn assert_all_rejected(cases: &[(String, &str)]) {
     let differ: Vec<String> = cases
         .iter()
-        .map(|(text, expected)| (said(text), expected))
+        .map(|(text, expected)| (error_text(text), expected))
         .filter(|(found, expected)| !found.starts_with(*expected))
         .map(|(found, expected)| format!("{expected} …\n{found}"))
         .collect();
@@ -264,11 +267,11 @@ fn joint(kind: &str, inside: &str) -> String {
 }
 
 #[test]
-fn axes_that_can_not_be_said_are_refused_at_their_line() {
+fn unsupported_axes_are_rejected_at_their_line() {
     let parallel = format!("{Z}<axis2><xyz>0 0 -1</xyz></axis2>");
     let still = format!("{Z}\n<screw_thread_pitch>0</screw_thread_pitch>");
     let turn = |xyz: &str| joint("revolute", &format!("<axis>\n{xyz}</axis>"));
-    all_are_said(&[
+    assert_all_rejected(&[
         (
             joint("plane", Z),
             "5: the joint `j` is `plane`, which is not supported",
@@ -299,10 +302,10 @@ fn axes_that_can_not_be_said_are_refused_at_their_line() {
 }
 
 #[test]
-fn ends_that_can_not_be_said_are_refused_at_their_line() {
+fn unsupported_joint_ends_are_rejected_at_their_line() {
     let fixed = |old: &str, new: &str| joint("fixed", Z).replace(old, new);
     let more = |more: &str| one_joint("revolute", Z, more);
-    all_are_said(&[
+    assert_all_rejected(&[
         (
             fixed(">a<", ">world<"),
             "6: the child of the joint `j` is the",
@@ -333,13 +336,13 @@ fn ends_that_can_not_be_said_are_refused_at_their_line() {
 }
 
 #[test]
-fn frames_and_files_that_can_not_be_said_are_refused_at_their_line() {
+fn unsupported_frames_and_files_are_rejected_at_their_line() {
     let more = |more: &str| one_joint("revolute", Z, more);
     let uri = |uri: &str| more(&format!("<include>\n<uri>{uri}</uri></include>"));
     let pose = |pose: &str| more(&format!("<frame name='f'>\n<pose {pose}</pose></frame>"));
     let pair = "<frame name='f' attached_to='g'/>\n<frame name='g' attached_to='f'/>";
     let circle = "7: the pose of `f` refers to frames in a cycle";
-    all_are_said(&[
+    assert_all_rejected(&[
         (uri("model://arm"), "8: `model://arm` is not read"),
         (uri("../arm.sdf"), "8: `../arm.sdf` is not read"),
         (uri("robot.sdf"), "8: `robot.sdf` includes itself"),
@@ -359,7 +362,7 @@ fn frames_and_files_that_can_not_be_said_are_refused_at_their_line() {
 }
 
 #[test]
-fn documents_that_can_not_be_read_are_refused_at_their_line() {
+fn invalid_documents_are_rejected_at_their_line() {
     let robot = joint("revolute", Z);
     let mass = |mass: &str| {
         let inertial = format!("<inertial>\n<mass>{mass}</mass></inertial><pose>");
@@ -367,7 +370,7 @@ fn documents_that_can_not_be_read_are_refused_at_their_line() {
     };
     let two = "<sdf version='1.9'>\n<model name='a'/><model name='b'/></sdf>";
     let entity = "<!DOCTYPE sdf [<!ENTITY a 'b'>]>\n<sdf version='1.9'>&a;</sdf>";
-    all_are_said(&[
+    assert_all_rejected(&[
         (mass("-1"), "4: a mass is negative"),
         (mass("inf"), "5: <mass> must be a finite number"),
         (
@@ -392,14 +395,14 @@ fn documents_that_can_not_be_read_are_refused_at_their_line() {
 }
 
 #[test]
-fn a_base_that_floats_is_fixed_on_demand() {
+fn a_floating_base_is_fixed_on_request() {
     let text = one_joint(
         "revolute",
         Z,
         "<link name='b'><pose>0 0 1 0 0 0</pose></link>",
     )
     .replace("world", "b");
-    assert!(said(&text).contains("--fix-base"));
+    assert!(error_text(&text).contains("--fix-base"));
     let options = Options {
         fix_base: true,
         ..Options::default()
@@ -413,7 +416,7 @@ fn a_base_that_floats_is_fixed_on_demand() {
 }
 
 #[test]
-fn models_of_a_world_and_models_of_files() {
+fn models_of_worlds_and_of_included_files_are_equal() {
     let folder = tempfile::tempdir().expect("a folder");
     let put = |name: &str, text: &str| {
         let path = folder.path().join(name);
@@ -463,7 +466,7 @@ fn models_of_a_world_and_models_of_files() {
 
 /// A truncated file or a replaced value gives an error or another robot.
 #[test]
-fn slips_are_no_panics() {
+fn damaged_sdformat_files_never_panic() {
     let text = fs::read_to_string(model("five_bar.sdf")).expect("a file");
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("robot.sdf");

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 /// Folder of the models, if it exists.
 fn shared() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
+    let default_folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
     let folder = std::env::var_os("OVERACT_SHARED")
-        .map_or(beside, PathBuf::from)
+        .map_or(default_folder, PathBuf::from)
         .join("models");
     if !folder.is_dir() {
         eprintln!("skipped: there are no models in {}", folder.display());
@@ -19,7 +19,7 @@ fn shared() -> Option<PathBuf> {
 }
 
 /// Models with their degrees of freedom, motors, legs and joints.
-const SAID: [(&str, [usize; 4]); 10] = [
+const ACCEPTED: [(&str, [usize; 4]); 10] = [
     ("ankles/g1.xml", [2, 2, 3, 11]),
     ("ankles/tiangong.xml", [2, 2, 3, 8]),
     ("reachy_mini/reachy_mini.xml", [9, 9, 6, 24]),
@@ -60,9 +60,9 @@ const REFUSED: [(&str, &str); 1] = [(
 )];
 
 #[test]
-fn models_of_others_pass_their_check() {
+fn published_models_pass_check_with_known_sizes() {
     let Some(folder) = shared() else { return };
-    for (name, sizes) in SAID {
+    for (name, sizes) in ACCEPTED {
         let Imported { text, .. } = import(&folder.join(name), &Options::default())
             .unwrap_or_else(|errors| panic!("{name}: {errors:?}"));
         let source = Source::new("made.toml", text);
@@ -81,19 +81,19 @@ fn models_of_others_pass_their_check() {
 }
 
 #[test]
-fn what_cannot_be_said_is_refused_by_name() {
+fn unsupported_published_models_are_rejected_with_a_reason() {
     let Some(folder) = shared() else { return };
     for (name, reason) in REFUSED {
         let errors = import(&folder.join(name), &Options::default()).expect_err(name);
-        let said =
+        let rendered =
             |(source, errors): &(Source, overact_codegen::Diagnostics)| errors.render_plain(source);
-        let text: String = errors.0.iter().map(said).collect();
+        let text: String = errors.0.iter().map(rendered).collect();
         assert!(text.contains(reason), "{name}: {text}");
     }
 }
 
 #[test]
-fn the_same_file_gives_the_same_bytes() {
+fn import_is_deterministic() {
     let Some(folder) = shared() else { return };
     let made = || {
         import(&folder.join("ankles/g1.xml"), &Options::default())
@@ -104,7 +104,7 @@ fn the_same_file_gives_the_same_bytes() {
 }
 
 #[test]
-fn a_file_that_includes_another_is_the_same_robot() {
+fn included_files_give_the_same_robot() {
     let Some(folder) = shared().filter(|_| overact_tier::is_full()) else {
         return;
     };

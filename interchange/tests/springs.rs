@@ -42,7 +42,7 @@ const GAS: &str = "<spatial name='gas' stiffness='300' damping='20' springlength
     <site site='frame'/><site site='hook'/></spatial>";
 
 #[test]
-fn a_tendon_of_two_sites_is_a_spring_and_a_damper() {
+fn a_two_site_tendon_becomes_a_spring_and_a_damper() {
     let text = imported(&four_bar("", GAS));
     for words in [
         "name = \"gas\"\nfrom = { body = \"ground\", at = [0.05, 0, 0.2] }\nto = { body = \"",
@@ -64,7 +64,7 @@ fn rest(text: &str) -> f64 {
 }
 
 #[test]
-fn a_missing_length_is_that_where_the_springs_of_joints_rest() {
+fn a_missing_spring_length_is_taken_at_the_joint_rest_positions() {
     let gas = GAS.replace(" springlength='0.15'", "");
     let text = imported(&four_bar("", &gas));
     // From (0.05, 0.2) to (0.1, 0.12).
@@ -78,7 +78,7 @@ fn a_missing_length_is_that_where_the_springs_of_joints_rest() {
 }
 
 #[test]
-fn joints_of_loops_keep_their_springs_and_fixed_tendons_add_to_them() {
+fn fixed_tendons_add_to_joint_springs_of_loops() {
     let text = imported(&four_bar("stiffness='7' springref='0.5'", ""));
     assert!(text.contains("spring = \"q - (0.5)\""), "{text}");
     let fixed = "<fixed stiffness='2' springlength='1'><joint joint='knee' coef='2'/></fixed>";
@@ -96,10 +96,10 @@ fn joints_of_loops_keep_their_springs_and_fixed_tendons_add_to_them() {
 }
 
 #[test]
-fn other_forces_of_tendons_are_refused() {
+fn other_tendon_forces_are_rejected() {
     let refused = |tendon: &str, words: &str| {
-        let said = read(&four_bar("", tendon)).expect_err(tendon);
-        assert!(said.contains(words), "{said}");
+        let message = read(&four_bar("", tendon)).expect_err(tendon);
+        assert!(message.contains(words), "{message}");
     };
     let three = GAS.replace(
         "<site site='frame'/>",
@@ -148,7 +148,7 @@ fn exported(text: &str, parameters: &str) -> (String, Vec<String>) {
 }
 
 #[test]
-fn stiffness_and_damping_of_tendons_are_exported() {
+fn tendon_stiffness_and_damping_are_exported() {
     let (text, notes) = exported(&four_bar("", GAS), "k_gas = 280\nk_gas_damper = 25");
     assert!(
         text.contains("name='gas' stiffness='280.0' damping='25.0'"),

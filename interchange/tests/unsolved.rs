@@ -27,14 +27,14 @@ fn read(text: &str, home: &[(&str, f64)]) -> Result<String, String> {
 
 #[track_caller]
 fn refused(text: &str, parts: &[&str]) {
-    let said = read(text, &[]).expect_err("a file that is rejected");
+    let message = read(text, &[]).expect_err("a file that is rejected");
     for part in parts {
-        assert!(said.contains(part), "{part}: {said}");
+        assert!(message.contains(part), "{part}: {message}");
     }
 }
 
 #[test]
-fn joints_that_only_a_group_determines_are_named() {
+fn joints_solvable_only_together_are_rejected_by_name() {
     // Watt's six-bar with the coupler driven through a ternary link: three rods hold the link.
     let text = format!(
         r#"<mujoco model="triad"><worldbody>
@@ -52,7 +52,7 @@ fn joints_that_only_a_group_determines_are_named() {
 }
 
 #[test]
-fn loops_that_are_folded_at_zero_ask_for_a_home() {
+fn loops_singular_at_zero_need_another_home() {
     // A palletiser: the lever drives the forearm by a parallelogram, in line at zero.
     let text = format!(
         r#"<mujoco model="arm"><worldbody>
@@ -75,7 +75,7 @@ fn loops_that_are_folded_at_zero_ask_for_a_home() {
 }
 
 #[test]
-fn joints_that_no_motor_holds_are_named() {
+fn undriven_joints_are_rejected_by_name() {
     let text = format!(
         r#"<mujoco model="five"><worldbody>
 <body name="a">{MASS}<joint name="a" axis="0 1 0"/>
@@ -97,7 +97,7 @@ fn joints_that_no_motor_holds_are_named() {
 }
 
 #[test]
-fn loops_at_their_full_reach_do_not_move() {
+fn fully_stretched_loops_are_rejected() {
     // Two cranks whose rod is exactly as long as the largest distance between their pins.
     let text = format!(
         r#"<mujoco model="reach"><worldbody>
@@ -108,8 +108,8 @@ fn loops_at_their_full_reach_do_not_move() {
 </worldbody><equality><connect body1="rod" body2="b" anchor="1.2 0 0"/><connect body1="a" body2="b" anchor=".5 0 0"/></equality>
 <actuator><motor joint="table"/></actuator></mujoco>"#
     );
-    let said = read(&text, &[]);
-    assert!(said.is_err(), "{said:?}");
+    let message = read(&text, &[]);
+    assert!(message.is_err(), "{message:?}");
     // Three hinges in line, of which the middle one is displaced only to second order.
     let text = format!(
         r#"<mujoco model="line"><worldbody>

@@ -76,7 +76,7 @@ fn parallelogram(more: &str) -> String {
 }
 
 #[test]
-fn joints_of_gazebo_close_loops() {
+fn gazebo_joints_close_loops() {
     let gazebo = |kind: &str| {
         format!(
             "<gazebo><joint name='loop' type='{kind}'><parent>coupler</parent><child>rocker</child>\
@@ -119,13 +119,13 @@ fn joints_of_gazebo_close_loops() {
         ("0.2 0 0 0 0 0", "0.2 0", "<pose> must be 6 finite numbers"),
     ] {
         let text = parallelogram(&gazebo("revolute").replace(from, to));
-        let said = read(&text, "", "a").expect_err("an error");
-        assert!(said.starts_with(expected), "{said}");
+        let message = read(&text, "", "a").expect_err("an error");
+        assert!(message.starts_with(expected), "{message}");
     }
 }
 
 #[test]
-fn closures_of_yaml_may_name_fixed_joints() {
+fn yaml_closures_may_refer_to_fixed_joints() {
     let tip = |name: &str, of: &str, at: &str| {
         format!("<link name='{name}_link'/>")
             + &joint(
@@ -144,7 +144,7 @@ fn closures_of_yaml_may_name_fixed_joints() {
 }
 
 #[test]
-fn joints_of_yaml_may_be_universal_or_fixed() {
+fn yaml_joints_may_be_universal_or_fixed() {
     let row = |middle: &str| {
         let text = "<robot name='row'><link name='base'/>".to_owned()
             + &link("a")
@@ -187,8 +187,11 @@ fn joints_of_yaml_may_be_universal_or_fixed() {
         plain(read(&row(&single), &kinds("FIXED"), "j,l")),
         plain(read(&row(&fixed), "", "j,l"))
     );
-    let said = read(&row(&single), &kinds("PLANAR"), "").expect_err("an error");
-    assert!(said.starts_with("the joint `k` is `PLANAR`"), "{said}");
+    let message = read(&row(&single), &kinds("PLANAR"), "").expect_err("an error");
+    assert!(
+        message.starts_with("the joint `k` is `PLANAR`"),
+        "{message}"
+    );
 }
 
 /// Two arms of two joints each on one base.
@@ -208,7 +211,7 @@ fn arms(more: &str) -> String {
 }
 
 #[test]
-fn couplings_of_urdf_plus_add_the_joints_up_to_the_common_ancestor() {
+fn urdf_plus_couplings_sum_joints_to_the_common_ancestor() {
     let coupling = |ends: [&str; 2]| {
         format!(
             "<coupling name='k'><predecessor link='{}'/><successor link='{}'/><ratio value='-2'/></coupling>",
@@ -216,10 +219,10 @@ fn couplings_of_urdf_plus_add_the_joints_up_to_the_common_ancestor() {
         )
     };
     // `base` to `a` has the joint ja, and `a` is the ancestor of `b`: only jb is left.
-    let said = read(&arms(&coupling(["a", "b"])), "", "").expect_err("an error");
+    let message = read(&arms(&coupling(["a", "b"])), "", "").expect_err("an error");
     assert!(
-        said.starts_with("the coupling is between 1 joints, not two: `jb`"),
-        "{said}"
+        message.starts_with("the coupling is between 1 joints, not two: `jb`"),
+        "{message}"
     );
     let tree = |follow: &str, more: &str| {
         let rotor = joint("jr", ["a", "r"], "revolute", follow);
@@ -235,10 +238,10 @@ fn couplings_of_urdf_plus_add_the_joints_up_to_the_common_ancestor() {
         expected
     );
     // The tip is behind two joints.
-    let said = read(&tree("", &coupling(["c", "r"])), "", "").expect_err("an error");
+    let message = read(&tree("", &coupling(["c", "r"])), "", "").expect_err("an error");
     assert!(
-        said.starts_with("the coupling is between 3 joints, not two"),
-        "{said}"
+        message.starts_with("the coupling is between 3 joints, not two"),
+        "{message}"
     );
     // A fixed link belongs to the joint before it.
     let tip = "<link name='tip'/>".to_owned() + &joint("f", ["b", "tip"], "fixed", "");
@@ -255,7 +258,7 @@ fn couplings_of_urdf_plus_add_the_joints_up_to_the_common_ancestor() {
 ///
 /// Its first rotation, by a quarter turn, brings the second into the plane.
 #[test]
-fn a_home_at_which_a_universal_joint_blocks_a_motor_is_moved() {
+fn the_home_is_moved_if_a_universal_joint_blocks_a_motor() {
     let pin = |name: &str, ends: [&str; 2], at: &str, turn: f64| {
         let origin = format!("<origin xyz='{at}' rpy='0 0 {turn}'/>");
         let limits = "<limit lower='-3' upper='3' effort='1' velocity='1'/>";

@@ -40,7 +40,7 @@ mod tests {
     use super::{called, titled, with_joints};
 
     #[test]
-    fn sentences_keep_all_but_bare_numbers() {
+    fn only_bare_numbers_in_sentences_become_joints() {
         let words = "the torques of `3` and `leg2` by `fv_3`";
         assert_eq!(
             with_joints(words),
@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bare_number_is_a_joint() {
+    fn bare_numbers_are_displayed_as_joints() {
         assert_eq!(called("3"), "joint 3");
         assert_eq!(called("leg3"), "`leg3`");
         assert_eq!(called("1_2"), "`1_2`");

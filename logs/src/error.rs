@@ -183,7 +183,7 @@ mod tests {
     use super::{edit_distance, suggestion};
 
     #[test]
-    fn distances_are_levenshtein() {
+    fn edit_distances_ignore_case_and_give_suggestions() {
         assert_eq!(edit_distance("kitten", "sitting"), 3);
         assert_eq!(edit_distance("", "abc"), 3);
         assert_eq!(edit_distance("Time", "time"), 0);

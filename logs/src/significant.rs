@@ -39,7 +39,7 @@ mod tests {
     use super::significant;
 
     #[test]
-    fn numbers_are_short() {
+    fn numbers_are_rounded_to_significant_digits() {
         assert_eq!(significant(95.108_935_08, 6), "95.1089");
         assert_eq!(significant(9.999_99e-3, 3), "0.01");
         assert_eq!(significant(-2.5e-7, 3), "-2.50e-7");

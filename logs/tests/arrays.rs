@@ -131,7 +131,7 @@ fn zip(members: &[(&str, Vec<u8>)]) -> Vec<u8> {
 
 /// Counts of encoders are often integers of 32 bits.
 #[test]
-fn integers_of_matlab_are_numbers() {
+fn matlab_integers_are_read() {
     let integers = |name: &str, values: [i32; 3]| {
         let values: Vec<u8> = values
             .iter()
@@ -156,16 +156,16 @@ fn integers_of_matlab_are_numbers() {
 }
 
 #[test]
-fn files_of_matlab_4_are_refused_by_name() {
+fn matlab_4_files_are_rejected_with_the_reason() {
     let header = [0_u32, 3, 1, 0, 2].map(u32::to_le_bytes).concat();
     let file = [header, b"q\0".to_vec(), doubles(&[1.0, 2.0, 3.0])].concat();
-    let told = log("a.mat", &file, &mapping("q", "q")).expect_err("an old file");
-    assert!(told.contains("MATLAB's version 4"), "{told}");
-    assert!(told.contains("save(..., '-v7')"), "{told}");
+    let message = log("a.mat", &file, &mapping("q", "q")).expect_err("an old file");
+    assert!(message.contains("MATLAB's version 4"), "{message}");
+    assert!(message.contains("save(..., '-v7')"), "{message}");
 }
 
 #[test]
-fn matrices_and_structures_of_matlab() {
+fn matlab_matrices_and_structures_are_read() {
     let q = [1.0, 2.0, 3.0, 10.0, 20.0, 30.0];
     let file = mat(&[
         matrix("q", (3, 2), &q),
@@ -220,7 +220,7 @@ fn matrices_and_structures_of_matlab() {
 }
 
 #[test]
-fn arrays_of_numpy() {
+fn numpy_arrays_are_read() {
     let rows = doubles(&[1.0, 10.0, 2.0, 20.0, 3.0, 30.0]);
     let expected = (vec![1.0, 2.0, 3.0], vec![10.0, 20.0, 30.0]);
     let numbered = mapping("$1", "$2");
@@ -275,7 +275,7 @@ fn arrays_of_numpy() {
 }
 
 #[test]
-fn arrays_that_are_none_are_named() {
+fn non_numeric_numpy_arrays_are_rejected_by_name() {
     let refused = |file: &[u8]| log("a.npz", file, &mapping("q", "tau")).expect_err("an error");
     assert_eq!(
         refused(&npy("<U3", "False", "(1,)", &[0; 12])),
@@ -316,7 +316,7 @@ numpy.savetxt(sys.argv[1] + '/text.txt', numpy.column_stack([q, 10*t]), header='
 ";
 
 #[test]
-fn numpys_own_files_have_the_same_numbers() {
+fn files_written_by_numpy_have_the_same_numbers() {
     let folder = tempfile::tempdir().expect("a folder");
     let python = Command::new("python3")
         .arg("-c")
@@ -345,7 +345,7 @@ fn numpys_own_files_have_the_same_numbers() {
 }
 
 #[test]
-fn arrays_without_numbers_are_read_whatever_their_other_size() {
+fn empty_arrays_with_huge_shapes_are_rejected() {
     for (shape, order) in [
         ("(0, 1000000000000000)", "False"),
         ("(0, 1000000000000000)", "True"),
@@ -360,7 +360,7 @@ fn arrays_without_numbers_are_read_whatever_their_other_size() {
 }
 
 #[test]
-fn members_of_an_archive_are_limited_together() {
+fn archive_members_are_limited_together() {
     let member = npy("<f8", "False", "(131072,)", &doubles(&[0.0; 131_072]));
     let one = zip(&[("t.npy", member)]);
     // The archive lists the same bytes 300 times.
@@ -388,7 +388,7 @@ fn members_of_an_archive_are_limited_together() {
 
 #[cfg(unix)]
 #[test]
-fn devices_are_no_logs() {
+fn devices_are_rejected_as_logs() {
     let error = read(Path::new("/dev/zero"), &mapping("q", "tau"), false).expect_err("no file");
     assert!(error.to_string().contains("not a regular file"), "{error}");
 }

@@ -33,7 +33,7 @@ fn array<'a>(name: &'a str, columns: usize, values: &'a [f64]) -> Array<'a> {
 }
 
 #[test]
-fn columns_of_matrices_expressions_and_gains_are_those_of_files() {
+fn arrays_support_matrix_columns_expressions_and_gains() {
     let time = series(|t| t);
     let positions = [series(f64::sin), series(f64::cos)].concat();
     let (first, second) = (series(|t| t * t), series(|t| -t));
@@ -57,7 +57,7 @@ fn columns_of_matrices_expressions_and_gains_are_those_of_files() {
 }
 
 #[test]
-fn what_is_missing_or_no_number_is_told_by_name() {
+fn missing_and_non_finite_arrays_are_reported_by_name() {
     let time = series(|t| t);
     let mut positions = [series(f64::sin), series(f64::cos)].concat();
     positions[7] = f64::NAN;

@@ -20,7 +20,7 @@ fn log(count: usize) -> String {
 }
 
 #[test]
-fn compressed_logs_are_read_like_others() {
+fn compressed_logs_are_read_like_uncompressed_ones() {
     let bytes = packed(&log(50));
     let mapping = timed("q", "tau");
     let own = run("a.csv.gz", &[("a.csv.gz", &bytes)], &mapping).expect("a log");
@@ -36,27 +36,27 @@ fn compressed_logs_are_read_like_others() {
 }
 
 #[test]
-fn defects_are_located_in_the_unpacked_text() {
+fn errors_are_located_in_the_unpacked_text() {
     let text = log(50).replace("0.3,3,", "0.3,x,");
     let mapping = timed("q", "tau");
-    let told = run("a.csv.gz", &[("a.csv.gz", &packed(&text))], &mapping);
-    let told = told.expect_err("a word");
-    assert!(told.starts_with("a.csv.gz:5: "), "{told}");
+    let message = run("a.csv.gz", &[("a.csv.gz", &packed(&text))], &mapping);
+    let message = message.expect_err("a word");
+    assert!(message.starts_with("a.csv.gz:5: "), "{message}");
     let whole = packed(&log(500));
-    let told = run(
+    let message = run(
         "a.csv.gz",
         &[("a.csv.gz", &whole[..whole.len() / 2])],
         &mapping,
     );
-    let told = told.expect_err("truncated");
+    let message = message.expect_err("truncated");
     assert!(
-        told.contains("the compressed file is damaged or truncated"),
-        "{told}"
+        message.contains("the compressed file is damaged or truncated"),
+        "{message}"
     );
     let twice = packed("x");
     let mut packing = Encoder::new(Vec::new()).expect("an encoder");
     packing.write_all(&twice).expect("packed");
     let twice = packing.finish().into_result().expect("packed");
-    let told = run("a.csv.gz", &[("a.csv.gz", &twice)], &mapping).expect_err("twice");
-    assert!(told.contains("compressed by gzip twice"), "{told}");
+    let message = run("a.csv.gz", &[("a.csv.gz", &twice)], &mapping).expect_err("twice");
+    assert!(message.contains("compressed by gzip twice"), "{message}");
 }

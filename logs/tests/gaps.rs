@@ -84,7 +84,7 @@ fn a_log_is_split_at_gaps() {
 }
 
 #[test]
-fn the_name_of_a_stretch_reads_it_again() {
+fn the_name_of_a_stretch_selects_its_samples() {
     let text = rows(uniform(), |time| !(12.0..13.5).contains(&time));
     let mapping = timed("q", "tau");
     let runs = runs("a.csv", &[("a.csv", &text)], &mapping).expect("runs");
@@ -95,7 +95,7 @@ fn the_name_of_a_stretch_reads_it_again() {
 }
 
 #[test]
-fn stretches_that_are_too_short_are_left_out() {
+fn short_stretches_are_left_out() {
     let text = rows(uniform(), |time| {
         !(12.0..13.0).contains(&time) && !(13.3..14.0).contains(&time)
     });
@@ -109,10 +109,10 @@ fn stretches_that_are_too_short_are_left_out() {
     );
     // Nothing is left.
     let text = rows(uniform(), |time| (100.0 * time).round() as i64 % 100 < 40);
-    let told = runs("a.csv", &[("a.csv", &text)], &timed("q", "tau")).expect_err("too short");
+    let message = runs("a.csv", &[("a.csv", &text)], &timed("q", "tau")).expect_err("too short");
     assert!(
-        told.starts_with("a.csv: the time has 59 gaps, and the longest stretch without a gap has 40 samples: the filters need at least 50"),
-        "{told}"
+        message.starts_with("a.csv: the time has 59 gaps, and the longest stretch without a gap has 40 samples: the filters need at least 50"),
+        "{message}"
     );
 }
 
@@ -122,7 +122,7 @@ fn jittered() -> impl Iterator<Item = f64> {
 }
 
 #[test]
-fn stretches_are_resampled_each_on_its_own() {
+fn stretches_are_resampled_separately() {
     let text = rows(jittered(), |time| !(12.0..13.5).contains(&time));
     let mapping = Mapping {
         resample: Some(100.0),
@@ -202,20 +202,21 @@ fn angles_are_unwrapped_within_stretches() {
 }
 
 #[test]
-fn a_clock_that_starts_anew_is_refused() {
+fn a_restarting_clock_is_rejected() {
     let one = rows(uniform(), |time| time < 20.0);
     let two = format!("{one}{}", &one["t,q,tau\n".len()..]);
-    let told = |mapping: &Mapping| runs("a.csv", &[("a.csv", &two)], mapping).expect_err("refused");
+    let message =
+        |mapping: &Mapping| runs("a.csv", &[("a.csv", &two)], mapping).expect_err("refused");
     let reason =
         "the clock starts anew there, or a stamp is wrong: write each recording to its own file";
-    let plain = told(&timed("q", "tau"));
+    let plain = message(&timed("q", "tau"));
     assert!(
         plain.starts_with(
             "a.csv:2002: the time runs backwards after sample 1999, from 19.99 s to 0 s"
         ) && plain.contains(reason),
         "{plain}"
     );
-    let resampled = told(&Mapping {
+    let resampled = message(&Mapping {
         resample: Some(100.0),
         ..timed("q", "tau")
     });
@@ -226,24 +227,25 @@ fn a_clock_that_starts_anew_is_refused() {
         resample: Some(100.0),
         ..timed("q", "tau")
     };
-    let told = runs("a.csv", &[("a.csv", &swapped)], &mapping).expect_err("refused");
-    assert!(told.contains("sort the samples"), "{told}");
+    let message = runs("a.csv", &[("a.csv", &swapped)], &mapping).expect_err("refused");
+    assert!(message.contains("sort the samples"), "{message}");
 }
 
 #[test]
-fn other_defects_of_a_stretch_are_reported() {
+fn nonuniform_time_within_a_stretch_is_reported() {
     let text = rows(uniform(), |time| {
         !(12.0..13.5).contains(&time) && time != 40.0
     });
-    let told = runs("a.csv", &[("a.csv", &text)], &timed("q", "tau")).expect_err("a lost sample");
+    let message =
+        runs("a.csv", &[("a.csv", &text)], &timed("q", "tau")).expect_err("a lost sample");
     assert!(
-        told.contains("the time is not uniform") && told.contains("set `resample"),
-        "{told}"
+        message.contains("the time is not uniform") && message.contains("set `resample"),
+        "{message}"
     );
 }
 
 #[test]
-fn a_range_of_time_may_have_gaps() {
+fn time_ranges_may_contain_gaps() {
     let text = rows(uniform(), |time| !(12.0..13.5).contains(&time));
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.csv");

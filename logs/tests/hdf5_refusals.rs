@@ -22,7 +22,7 @@ fn log(position: &str, torque: &str) -> Result<Log, String> {
 }
 
 #[test]
-fn what_is_no_vector_of_numbers_is_named() {
+fn non_numeric_datasets_are_rejected_by_name() {
     for (name, what) in [
         (
             "label",
@@ -85,7 +85,7 @@ impl Random {
 }
 
 #[test]
-fn files_with_any_wrong_byte_are_read_or_refused() {
+fn corrupted_files_are_read_or_rejected() {
     let mut random = Random(1);
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.h5");

@@ -73,7 +73,7 @@ fn files_are_joined_sample_by_sample() {
 }
 
 #[test]
-fn columns_of_joined_files_are_called_by_their_file() {
+fn errors_in_joined_files_mention_their_file() {
     let output = |files: &[(&str, &str)], torque: &str| {
         let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
         let mapping = mapping(at(10.0), "file1.b", torque);
@@ -136,7 +136,7 @@ fn columns_of_joined_files_are_called_by_their_file() {
 }
 
 #[test]
-fn names_of_files_that_are_joined_otherwise_are_explained() {
+fn other_ways_to_join_file_names_are_rejected_with_help() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name).display().to_string();
     for (name, text) in [POSITIONS, TORQUES] {
@@ -165,7 +165,7 @@ fn names_of_files_that_are_joined_otherwise_are_explained() {
 }
 
 #[test]
-fn files_of_different_lengths_are_located() {
+fn files_of_different_lengths_are_rejected() {
     let short = ("torque.csv", "c\n7\n8\n");
     let mapping = mapping(at(10.0), "b", "c");
     for (name, files) in [
@@ -215,7 +215,7 @@ fn a_file_may_have_a_plus_in_its_name() {
 }
 
 #[test]
-fn columns_are_expressions_of_columns() {
+fn columns_may_be_expressions() {
     let log = (
         "log.csv",
         "t,q5,q6,motor 1 [deg],i\n0,1,2,90,0.5\n1,3,-4,180,-1\n2,0.5,0.25,0,2\n",
@@ -239,7 +239,7 @@ fn columns_are_expressions_of_columns() {
 }
 
 #[test]
-fn expressions_that_are_none_are_named() {
+fn invalid_expressions_are_rejected_with_the_reason() {
     let log = ("log.csv", "t,q5,q6,i\n0,1,2,0.5\n1,3,0,-1\n2,0,0.25,2\n");
     let refused = |position: &str, torque: &str| {
         run("log.csv", &[log], &mapping(column("t"), position, torque)).expect_err("an error")
@@ -256,7 +256,7 @@ fn expressions_that_are_none_are_named() {
 }
 
 #[test]
-fn a_large_run_in_two_files_stays_in_them() {
+fn large_joined_runs_stay_on_disk() {
     let folder = tempfile::tempdir().expect("a folder");
     let (mut positions, mut torques) = (String::from("q\n"), String::from("i\n"));
     for k in 0..530_000_u32 {
@@ -276,7 +276,7 @@ fn a_large_run_in_two_files_stays_in_them() {
 }
 
 #[test]
-fn motors_of_the_tx40_become_joints() {
+fn tx40_motor_columns_become_joint_columns() {
     let (Some(positions), Some(torques)) = (
         shared("data/tx40/pos_read_data.csv"),
         shared("data/tx40/curr_data.csv"),

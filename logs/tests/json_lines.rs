@@ -29,7 +29,7 @@ fn lines(count: usize, special: &str) -> String {
 }
 
 #[test]
-fn nested_columns_are_named_and_computed_with() {
+fn nested_columns_can_be_used_in_expressions() {
     let text = lines(20, "5");
     let files = [("a.jsonl", text.as_bytes())];
     let plain = timed("position[1]", "drive.tau");
@@ -42,7 +42,7 @@ fn nested_columns_are_named_and_computed_with() {
 }
 
 #[test]
-fn dates_and_times_of_day_are_seconds() {
+fn dates_and_times_of_day_become_seconds() {
     for time in ["2026-03-01T23:59:59.9", "23:59:59.9"] {
         let (date, _) = time.split_once("23:").expect("a time");
         let next = date.replace("-01T", "-02T");
@@ -62,13 +62,13 @@ fn dates_and_times_of_day_are_seconds() {
     // A time in a column of numbers is no number.
     let text = lines(20, "\"10:00:00.5\"");
     let files = [("a.jsonl", text.as_bytes())];
-    let told = run("a.jsonl", &files, &timed("position[1]", "drive.tau"));
-    let told = told.expect_err("a text");
-    assert!(told.contains("is the text \"10:00:00.5\""), "{told}");
+    let message = run("a.jsonl", &files, &timed("position[1]", "drive.tau"));
+    let message = message.expect_err("a text");
+    assert!(message.contains("is the text \"10:00:00.5\""), "{message}");
 }
 
 #[test]
-fn a_file_of_json_is_joined_with_others() {
+fn json_files_are_joined_with_text_files() {
     let text = lines(3, "5");
     let files = [
         ("a.json", text.as_bytes()),
@@ -83,23 +83,23 @@ fn a_file_of_json_is_joined_with_others() {
 }
 
 #[test]
-fn problems_are_located_by_line() {
-    let told = |text: &str, torque: &str| {
+fn errors_are_located_by_line() {
+    let message = |text: &str, torque: &str| {
         let mapping = timed("position[1]", torque);
         run("a.jsonl", &[("a.jsonl", text.as_bytes())], &mapping).expect_err("refused")
     };
-    let null = told(&lines(20, "null"), "drive.tau");
+    let null = message(&lines(20, "null"), "drive.tau");
     assert!(
         null.starts_with("a.jsonl:6: `drive.tau` is null, not a number"),
         "{null}"
     );
-    let missing = told(&lines(20, "5"), "drive.torque");
+    let missing = message(&lines(20, "5"), "drive.torque");
     assert!(
         missing.contains("there is no key `drive.torque`; the file has `t`, `position[0]`, `position[1]`, `drive.tau`"),
         "{missing}"
     );
     let late = lines(20, "5").replace("\"t\": 0.07,", "\"t\": 0.071,");
-    let late = told(&late, "drive.tau");
+    let late = message(&late, "drive.tau");
     assert!(
         late.starts_with("a.jsonl:8: the time is not uniform"),
         "{late}"
@@ -124,7 +124,7 @@ fn large_files_are_read_block_by_block() {
 }
 
 #[test]
-fn a_logged_file_is_read() {
+fn a_published_json_log_is_read() {
     let Some(path) = shared("cases/logs/jsonl.jsonl") else {
         return;
     };

@@ -117,8 +117,8 @@ fn write_mcap(path: &Path) -> usize {
         let mut packing = lz4_flex::frame::FrameEncoder::new(Vec::new());
         packing.write_all(&records).expect("packed");
         let packed = packing.finish().expect("packed");
-        let said = (records.len() as u64, crc32fast::hash(&records));
-        length = put(&chunk("lz4", &packed, said));
+        let declared = (records.len() as u64, crc32fast::hash(&records));
+        length = put(&chunk("lz4", &packed, declared));
     }
     put(&end(length, &channel));
     count
@@ -185,7 +185,7 @@ fn measured(path: &Path, mapping: &Mapping, count: usize) {
 }
 
 #[test]
-fn large_files_stay_on_the_disk() {
+fn large_files_are_not_loaded_into_memory() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("large.parquet");
     let count = write_parquet(&path);

@@ -47,7 +47,7 @@ fn usual(k: u64) -> Vec<u8> {
 }
 
 #[test]
-fn files_of_any_make_have_the_same_numbers() {
+fn mcap_chunking_compression_and_encoding_give_the_same_numbers() {
     let records = messages(usual);
     let expected = numbers(log(&file(&records)));
     assert_eq!(expected.0, (0..50).map(f64::from).collect::<Vec<_>>());
@@ -85,7 +85,7 @@ fn files_of_any_make_have_the_same_numbers() {
 }
 
 #[test]
-fn topics_with_clocks_of_their_own_are_joined_by_time() {
+fn topics_with_different_clocks_are_joined_by_time() {
     let mut records = vec![
         topic(1, "/fast", CDR),
         topic(2, "/slow", CDR),
@@ -148,7 +148,7 @@ fn topics_with_clocks_of_their_own_are_joined_by_time() {
 }
 
 #[test]
-fn messages_that_do_not_fit_are_located() {
+fn inconsistent_messages_are_located() {
     let output = |state: &dyn Fn(u64) -> Vec<u8>| refused(&file(&messages(state)));
     let at_7 = |other: Vec<u8>| output(&|k| if k == 7 { other.clone() } else { usual(k) });
     let two = |k: u64, names: &[&str; 2]| state(k * STEP, names, [&[1.0, 2.0], &[], &[1.0, 2.0]]);
@@ -231,7 +231,7 @@ fn messages_that_do_not_fit_are_located() {
 }
 
 #[test]
-fn files_without_states_of_joints_say_what_they_have() {
+fn files_without_joint_states_are_rejected_with_their_topics() {
     let output = refused(&file(&[
         topic(1, "/tf", ("tf2_msgs/msg/TFMessage", "cdr")),
         topic(2, "/js", (JOINT_STATE, "json")),
@@ -254,7 +254,7 @@ fn files_without_states_of_joints_say_what_they_have() {
 }
 
 #[test]
-fn files_that_are_cut_off_or_broken_are_located() {
+fn truncated_or_damaged_files_are_rejected() {
     let records = messages(usual);
     let whole = file(&records);
     for end in [8, 9, 30, 200, 1000, whole.len() - 1] {
@@ -268,8 +268,8 @@ fn files_that_are_cut_off_or_broken_are_located() {
     let all = records.concat();
     let size = all.len() as u64;
     let place = mcap_file::beginning().len();
-    let broken = |packing: &str, packed: &[u8], said: (u64, u32), why: &str| {
-        let output = refused(&file(&[chunk(packing, packed, said)]));
+    let broken = |packing: &str, packed: &[u8], declared: (u64, u32), why: &str| {
+        let output = refused(&file(&[chunk(packing, packed, declared)]));
         let expected = format!("the chunk at byte {place} is broken: {why}");
         assert!(output.contains(&expected), "{output}");
     };
@@ -329,7 +329,7 @@ impl Random {
 }
 
 #[test]
-fn files_with_any_wrong_byte_are_read_or_refused() {
+fn corrupted_files_are_read_or_rejected() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/written");
     let mut random = Random(1);
     let other = tempfile::tempdir().expect("a folder");

@@ -12,7 +12,7 @@ use overact_logs::read;
 use parquet_file::{Cells, written};
 
 #[test]
-fn files_of_both_kinds_are_joined() {
+fn parquet_and_text_files_are_joined() {
     let positions = written(
         "message log { required double b; required double a; }",
         &[
@@ -38,7 +38,7 @@ fn files_of_both_kinds_are_joined() {
 }
 
 #[test]
-fn a_parquet_file_is_interpolated_as_a_text_is() {
+fn parquet_and_text_files_are_interpolated_alike() {
     let row = |time: f64, value: f64| format!("{time},{value}\n");
     let positions = (0..1001).map(|k| f64::from(k) / 1000.0);
     let positions: String = positions.map(|t| row(t, t)).collect();
@@ -64,7 +64,7 @@ fn a_parquet_file_is_interpolated_as_a_text_is() {
 }
 
 #[test]
-fn instants_of_two_files_count_from_the_same_second() {
+fn timestamps_of_joined_files_have_a_common_origin() {
     // The second file starts in another second, 20 ms later.
     let start = 1_700_000_000_990_000_i64;
     let first: Vec<i64> = (0..100).map(|k| start + 1000 * k).collect();
@@ -94,7 +94,7 @@ fn instants_of_two_files_count_from_the_same_second() {
 }
 
 #[test]
-fn large_files_are_joined_as_small_ones_are() {
+fn large_files_are_joined_block_by_block() {
     let folder = tempfile::tempdir().expect("a folder");
     let samples = 600_000_u32;
     let times = |rate: f64, start: f64| -> Vec<f64> {

@@ -30,7 +30,7 @@ fn text([time, position, torque]: &[Vec<f64>; 3]) -> String {
 }
 
 #[test]
-fn the_same_numbers_as_from_a_text() {
+fn parquet_and_text_give_the_same_numbers() {
     let samples = samples();
     let mapping = timed("q", "tau");
     let text = text(&samples);
@@ -83,7 +83,7 @@ fn the_same_numbers_as_from_a_text() {
 }
 
 #[test]
-fn files_packed_by_gzip_and_zstandard() {
+fn gzip_and_zstandard_files_are_read() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/written");
     let all = 0..200_u32;
     let positions: Vec<f64> = all.clone().map(|k| f64::from(k * k) / 7.0).collect();
@@ -108,7 +108,7 @@ fn files_packed_by_gzip_and_zstandard() {
 }
 
 #[test]
-fn numbers_of_every_kind() {
+fn all_numeric_types_are_read() {
     let file = written(
         "message log {
             required float float; required int32 int; required int64 long; required boolean flag;
@@ -195,7 +195,7 @@ const POLARS: &str = "/////8YAAAAEAAAA8v///xQAAAAEAAEAAAAKAAsACAAKAAQA+P///wwAAA
     AASAAQAEAARAAgAAAAMAAAAAAD6////AgAGAAYABAABAAAAdAA=";
 
 #[test]
-fn durations_are_told_from_the_schema_of_arrow() {
+fn durations_are_recognised_from_the_arrow_schema() {
     let schema = "message log { required int64 t; required int64 d; required double q_1; }";
     let read_as = |arrow: &str| {
         let stored = parquet::file::metadata::KeyValue::new(
@@ -256,7 +256,7 @@ except ImportError:
 ";
 
 #[test]
-fn the_files_of_pyarrow_have_the_same_numbers() {
+fn files_written_by_pyarrow_have_the_same_numbers() {
     let folder = tempfile::tempdir().expect("a folder");
     let python = Command::new("python3")
         .args(["-c", SCRIPT])

@@ -19,7 +19,7 @@ static ALLOCATOR: PeakAlloc = PeakAlloc;
 const SAMPLES: u32 = 700_000;
 
 #[test]
-fn a_large_file_stays_on_the_disk() {
+fn a_large_file_is_not_loaded_into_memory() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("large.parquet");
     let schema = "message log { required double t; required double q; required float tau; }";

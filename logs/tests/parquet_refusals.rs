@@ -24,7 +24,7 @@ fn assert_legible(output: &str) {
 }
 
 #[test]
-fn cells_without_numbers_are_located() {
+fn null_and_non_finite_cells_are_located() {
     let file = written(
         "message log { required double t; optional double q; optional float tau; }",
         &[
@@ -41,17 +41,17 @@ fn cells_without_numbers_are_located() {
          a.parquet: `tau`: sample 3 is not a finite number"
     );
     // A column without any value, of which only the first cells are reported.
-    let nothing = vec![None; 5000];
+    let nulls = vec![None; 5000];
     let file = written(
         "message log { optional double q; }",
-        &[Cells::Optional(&nothing)],
+        &[Cells::Optional(&nulls)],
     );
     let output = log(&file, &untimed("q", "q")).expect_err("nulls");
     assert_eq!(output.lines().count(), 20);
 }
 
 #[test]
-fn columns_that_are_no_numbers_are_named() {
+fn non_numeric_columns_are_rejected_by_name() {
     let file = written(
         "message log {
             required double q; required binary note (STRING); required int32 on (DATE);
@@ -70,7 +70,7 @@ fn columns_that_are_no_numbers_are_named() {
     // They may occur with requested columns, and count.
     assert_eq!(numbers(log(&file, &untimed("q", "tau"))).1, [3.0, 4.0]);
     assert_eq!(numbers(log(&file, &untimed("q", "$6"))).1, [3.0, 4.0]);
-    let way_out = "help: write a column of numbers (float64) for each signal and each actuator";
+    let remedy = "help: write a column of numbers (float64) for each signal and each actuator";
     for (name, what) in [
         ("note", "column `note` has texts or bytes, not numbers"),
         ("$2", "column `note` has texts or bytes, not numbers"),
@@ -84,7 +84,7 @@ fn columns_that_are_no_numbers_are_named() {
     ] {
         assert_eq!(
             log(&file, &untimed("q", name)).expect_err(name),
-            format!("a.parquet: {what}\n  {way_out}")
+            format!("a.parquet: {what}\n  {remedy}")
         );
     }
     assert_eq!(
@@ -113,7 +113,7 @@ fn columns_that_are_no_numbers_are_named() {
 }
 
 #[test]
-fn files_that_are_cut_off_or_empty_are_refused() {
+fn truncated_or_empty_files_are_rejected() {
     let [time, position, torque] = &samples().map(|all| all[..50].to_vec());
     let position: Vec<Option<f64>> = position.iter().copied().map(Some).collect();
     let columns = [
@@ -154,7 +154,7 @@ fn files_that_are_cut_off_or_empty_are_refused() {
 }
 
 #[test]
-fn files_with_any_wrong_byte_are_read_or_refused() {
+fn corrupted_files_are_read_or_rejected() {
     let [time, position, torque] = &samples().map(|all| all[..12].to_vec());
     let position: Vec<Option<f64>> = position.iter().copied().map(Some).collect();
     let columns = [

@@ -34,7 +34,7 @@ fn a_separator_named_in_the_first_line_is_used() {
 }
 
 #[test]
-fn units_below_names_are_passed() {
+fn unit_lines_below_names_are_skipped() {
     for units in ["s;rad;Nm", "[s];[m];[N]", "(s);°;N m"] {
         let text = format!("time;q_1;tau_1\n{units}\n{SAMPLES}");
         same(text.as_bytes(), &named());
@@ -52,7 +52,7 @@ fn names_in_latin_1_are_read() {
 }
 
 #[test]
-fn settings_of_a_recorder_above_the_names_are_passed_and_noted() {
+fn recorder_preambles_are_skipped_and_noted() {
     let labview = "LabVIEW Measurement\t\nWriter_Version\t2\nSeparator\tTab\n***End_of_Header***\t\n\t\nChannels\t2\t\t\nSamples\t3\t3\t\nDate\t2026/03/01\t2026/03/01\t\nDelta_X\t0.1\t0.1\t\n***End_of_Header***\t\t\t\ntime\tq_1\ttau_1\tComment\n";
     let text = format!("{labview}{}", SAMPLES.replace(';', "\t"));
     same(text.as_bytes(), &named());
@@ -63,7 +63,7 @@ fn settings_of_a_recorder_above_the_names_are_passed_and_noted() {
 }
 
 #[test]
-fn lines_of_errors_count_the_preamble() {
+fn error_lines_count_the_preamble() {
     let text = "Test bench 3\nOperator: N. N.\ntime;q_1;tau_1\n0;1;2\n1;1;2\n2;x;2\n3;1;2\n4;1;2\n";
     let error = run("log.txt", &[("log.txt", text.as_bytes())], &named()).expect_err("a word");
     assert!(
@@ -73,7 +73,7 @@ fn lines_of_errors_count_the_preamble() {
 }
 
 #[test]
-fn broken_lines_among_samples_are_no_preamble() {
+fn malformed_lines_among_samples_are_not_skipped() {
     for broken in ["0.05;x;1", "fault;fault;fault", "0.05;;"] {
         let text = format!("time;q_1;tau_1\n-0.1;1;2\n{broken}\n{SAMPLES}");
         let error = run("log.txt", &[("log.txt", text.as_bytes())], &named()).expect_err("broken");
@@ -91,7 +91,7 @@ fn broken_lines_among_samples_are_no_preamble() {
 }
 
 #[test]
-fn dates_and_times_of_day_are_times() {
+fn dates_and_times_of_day_are_read() {
     let forms = [
         [
             "2026-03-01T23:59:59.9Z",
@@ -123,7 +123,7 @@ fn dates_and_times_of_day_are_times() {
 }
 
 #[test]
-fn files_with_dates_are_joined_at_their_instants() {
+fn files_with_dates_are_joined_by_absolute_time() {
     let positions = "time;q_1\n2026-03-01T23:59:59.9Z;1\n2026-03-02T00:00:00.0Z;2\n2026-03-02T00:00:00.1Z;3\n2026-03-02T00:00:00.2Z;4\n";
     let torques = "time;tau_1\n2026-03-02T00:00:00.0Z;20\n2026-03-02T00:00:00.1Z;30\n2026-03-02T00:00:00.2Z;40\n2026-03-02T00:00:00.3Z;50\n";
     let files = [
@@ -138,7 +138,7 @@ fn files_with_dates_are_joined_at_their_instants() {
 }
 
 #[test]
-fn topics_with_rows_of_their_own_are_joined_by_time() {
+fn topics_with_separate_rows_are_joined_by_time() {
     // Torques are 0.4 of a step late, and linear in time.
     let rows: String = (0..50)
         .map(|k| {
@@ -165,7 +165,7 @@ fn topics_with_rows_of_their_own_are_joined_by_time() {
 }
 
 #[test]
-fn a_missing_cell_stays_an_error() {
+fn a_missing_cell_is_an_error() {
     let text = "time,q_1,tau_1\n0,1,2\n0.1,,3\n0.2,3,4\n0.3,4,5\n";
     let error = run("log.txt", &[("log.txt", text.as_bytes())], &named()).expect_err("a gap");
     assert!(error.contains("the cell is empty"), "{error}");

@@ -46,7 +46,7 @@ fn error(log: &Log, expected: impl Fn(f64) -> f64) -> f64 {
 }
 
 #[test]
-fn the_error_of_interpolation_is_what_is_stated() {
+fn the_interpolation_error_is_within_the_stated_bound() {
     for (frequency, part) in [(5.0, 0.3), (10.0, 0.3), (2.0, 0.1), (10.0, 0.0)] {
         let motion = |t: f64| (TAU * frequency * t).sin();
         let log = log(
@@ -91,7 +91,7 @@ fn the_error_of_interpolation_is_what_is_stated() {
 }
 
 #[test]
-fn samples_at_uniform_times_stay_what_they_are() {
+fn uniform_samples_are_unchanged() {
     let rows = (0..300_u32).map(|k| (f64::from(k) / 64.0, [f64::from(k % 7), f64::from(k)]));
     let log = log(64.0, rows);
     let (positions, torques) = loaded(&log);
@@ -108,7 +108,7 @@ fn samples_at_uniform_times_stay_what_they_are() {
 }
 
 #[test]
-fn nothing_is_folded_when_the_rate_is_lowered() {
+fn downsampling_does_not_alias() {
     // At 100 Hz, 180 Hz would look like 20 Hz.
     let slow = |t: f64| (TAU * 3.0 * t).sin() + 0.5 * (TAU * 30.0 * t).cos();
     let motion = |t: f64| slow(t) + (TAU * 180.0 * t).sin();
@@ -133,7 +133,7 @@ fn nothing_is_folded_when_the_rate_is_lowered() {
 }
 
 #[test]
-fn samples_at_nearly_the_same_time_do_not_make_noise_grow() {
+fn nearly_coincident_samples_do_not_amplify_noise() {
     // Every second sample is a microsecond after the previous one, with noise of size 1.
     let rows = (0..2000_u32).map(|k| {
         let time = f64::from(k / 2) / 100.0 + f64::from(k % 2) * 1e-6 + f64::from(k / 2 % 3) * 1e-3;
@@ -144,7 +144,7 @@ fn samples_at_nearly_the_same_time_do_not_make_noise_grow() {
 }
 
 #[test]
-fn times_may_be_expressions_and_stand_in_several_files() {
+fn time_columns_may_be_expressions_in_several_files() {
     let motion = |t: f64| (TAU * 2.0 * t).sin();
     let times: Vec<f64> = jitter(1000, 200.0, 0.2).map(|t| t + 1.0).collect();
     let rows = times
@@ -185,7 +185,7 @@ fn times_may_be_expressions_and_stand_in_several_files() {
 }
 
 #[test]
-fn what_can_not_be_resampled_is_refused() {
+fn invalid_resampling_is_rejected() {
     let uneven = || jitter(1000, 100.0, 0.3).map(|t| (t, [t, t]));
     let output = run(
         "a.csv",
@@ -229,10 +229,10 @@ fn what_can_not_be_resampled_is_refused() {
     );
     let back = back.expect_err("back");
     assert!(back.contains("the time steps from 4.99"), "{back}");
-    let stands = resampled(100.0, uneven().map(|(_, own)| (1.0, own))).expect_err("stands");
+    let constant = resampled(100.0, uneven().map(|(_, own)| (1.0, own))).expect_err("stands");
     assert!(
-        stands.contains("the time steps from 1 s to 1 s"),
-        "{stands}"
+        constant.contains("the time steps from 1 s to 1 s"),
+        "{constant}"
     );
     let short = resampled(10.0, uneven().take(40)).expect_err("short");
     assert!(short.contains("the run is empty"), "{short}");
@@ -257,7 +257,7 @@ fn slow(t: f64) -> f64 {
 }
 
 #[test]
-fn rows_that_a_bus_repeats_are_left_out_and_noted() {
+fn repeated_bus_rows_are_left_out_and_noted() {
     // Every 16th row repeats the numbers of the one before, at its own time.
     let rows = jitter(4000, 1000.0, 0.2).scan(0.0, |last, t| {
         let is_repeat = (t * 1000.0).round() as u32 % 16 == 5;
@@ -274,7 +274,7 @@ fn rows_that_a_bus_repeats_are_left_out_and_noted() {
 }
 
 #[test]
-fn a_robot_that_stands_still_repeats_no_rows() {
+fn standstill_rows_are_not_left_out_as_repeats() {
     let rows = (0..4000).map(|k| {
         let t = f64::from(k) / 1000.0;
         let moved = (t.min(1.0), (t - 2.0).max(0.0));
@@ -301,7 +301,7 @@ fn a_robot_that_stands_still_repeats_no_rows() {
 }
 
 #[test]
-fn short_gaps_are_interpolated_and_noted_and_long_ones_refused() {
+fn short_gaps_are_interpolated_and_long_ones_rejected() {
     let rows = |gap: f64| {
         let times = (0..4000).map(|k| f64::from(k) / 1000.0);
         let kept = times.filter(move |t| !(*t > 2.0 && *t < 2.0 + gap - 1e-9));

@@ -44,7 +44,7 @@ fn check(path: &Path, mapping: &Mapping, scale: f64) {
 }
 
 #[test]
-fn structures_with_time_are_read() {
+fn matlab_structures_with_time_are_read() {
     for path in files() {
         let [values, torques] = ["out.signals(1).values(:,2)", "out.signals(2).values"];
         check(&path, &mapping("out.time", values, torques), 1.0);
@@ -66,7 +66,7 @@ fn structures_with_time_are_read() {
 }
 
 #[test]
-fn signals_of_recorders_are_read_by_path_and_name() {
+fn recorder_signals_are_read_by_path_and_name() {
     for path in files() {
         check(
             &path,
@@ -75,12 +75,12 @@ fn signals_of_recorders_are_read_by_path_and_name() {
         );
         let [position, torque] = ["\"Model Root\"/\"q\"", "\"Model Root\"/\"tau\""];
         check(&path, &mapping("rec.X.Data", position, torque), 1.0);
-        let told = read(&path, &mapping("rec.X.Data", position, "same"), false);
-        let told = told.expect_err("two of this name").to_string();
+        let message = read(&path, &mapping("rec.X.Data", position, "same"), false);
+        let message = message.expect_err("two of this name").to_string();
         assert!(
-            told.contains("several signals are called `same`")
-                && told.contains("`rec.Y(3).Data` or `rec.Y(4).Data`"),
-            "{told}"
+            message.contains("several signals are called `same`")
+                && message.contains("`rec.Y(3).Data` or `rec.Y(4).Data`"),
+            "{message}"
         );
     }
 }
@@ -102,20 +102,20 @@ fn cell_arrays_and_nested_structures_are_read() {
     let path = &files()[0];
     let [position, torque] = ["deep.a.b.c{1}.q(:,2)", "deep.a.b.c{1}.tau"];
     check(path, &mapping("out.time", position, torque), 1.0);
-    let told = read(
+    let message = read(
         path,
         &mapping("out.time", "out.signals(1).values", "tau"),
         false,
     );
-    let told = told.expect_err("a matrix").to_string();
+    let message = message.expect_err("a matrix").to_string();
     assert!(
-        told.contains("`out.signals(1).values(:,1)` is the first"),
-        "{told}"
+        message.contains("`out.signals(1).values(:,1)` is the first"),
+        "{message}"
     );
 }
 
 #[test]
-fn a_file_of_simulink_is_read() {
+fn a_simulink_file_is_read() {
     let Some(path) = shared("cases/logs/simulink_struct.mat") else {
         return;
     };

@@ -48,7 +48,7 @@ fn same(content: &str, mapping: &Mapping) {
 }
 
 #[test]
-fn separators_and_decimal_commas_are_told_from_the_text() {
+fn separators_and_decimal_commas_are_detected() {
     let point = "time,q_1,tau_1\n0,1.5,3\n0.1,-2,4.25\n0.2,2.5e-2,1000.5\n";
     same(point, &named());
     for separator in [";", "\t", "; ", " ", "   ", " \t ", "\t\t"] {
@@ -68,7 +68,7 @@ fn separators_and_decimal_commas_are_told_from_the_text() {
 }
 
 #[test]
-fn cells_may_stand_in_quotation_marks() {
+fn cells_may_be_quoted() {
     let text = "\"time\",\"q_1\",\"a, b\",\"tau_1\"\n\"0\",\"1.5\",\"x\",\"3\"\n0.1,-2,\"y\n\",4.25\n0.2,\"0.025\",z,1000.5\n";
     same(text, &named());
     let text = "time,q_1,tau_1\n\"0,0\",\"1,5\",\"3,0\"\n\"0,1\",\"-2\",\"4,25\"\n\"0,2\",\"0,025\",\"1000,5\"\n";
@@ -76,7 +76,7 @@ fn cells_may_stand_in_quotation_marks() {
 }
 
 #[test]
-fn columns_without_names_have_numbers() {
+fn unnamed_columns_are_selected_by_number() {
     let text = "0,1.5,3\n0.1,-2,4.25\n0.2,0.025,1000.5\n";
     let time = Time::Column(String::from("$1"));
     for text in [text, &format!("time,q,torque\n{text}")] {
@@ -91,7 +91,7 @@ fn columns_without_names_have_numbers() {
 }
 
 #[test]
-fn names_may_stand_in_a_comment() {
+fn column_names_may_be_in_a_comment() {
     // As `numpy.savetxt` writes a header, after a title.
     let numbers = "0 1.5 3\n0.1 -2 4.25\n0.2 0.025 1000.5\n";
     same(
@@ -107,7 +107,7 @@ fn names_may_stand_in_a_comment() {
 }
 
 #[test]
-fn large_texts_of_any_kind_stay_in_their_files() {
+fn large_text_files_stay_on_disk() {
     let mut text = String::from("time; q_1; tau_1\n");
     for k in 0..530_000_u32 {
         let value = f64::from(k);
@@ -130,7 +130,7 @@ fn large_texts_of_any_kind_stay_in_their_files() {
 }
 
 #[test]
-fn what_can_be_read_in_two_ways_is_refused() {
+fn ambiguous_decimal_commas_are_rejected() {
     assert_eq!(
         refused(b"time,q_1,tau_1\n0,0,1,5,3,0\n0,1,-2,0,4,25\n", &named()),
         "log.txt:2: the line has 6 columns, but the header names 3\n  help: if commas are decimal marks, separate the columns by semicolons or tabs; otherwise name every column"
@@ -147,7 +147,7 @@ fn what_can_be_read_in_two_ways_is_refused() {
 }
 
 #[test]
-fn columns_that_are_not_there_are_named_by_number() {
+fn missing_columns_of_unnamed_files_are_reported() {
     assert_eq!(
         refused(b"0 0 0\n0.1 0 0\n", &named()),
         "log.txt: there are no columns `time`, `q_1`, `tau_1`; the file has 3 columns, without names\n  help: \
@@ -168,7 +168,7 @@ fn columns_that_are_not_there_are_named_by_number() {
 }
 
 #[test]
-fn a_single_sample_or_none_is_no_run() {
+fn runs_with_fewer_than_two_samples_are_rejected() {
     let mapping = numbered(Time::Frequency(10.0));
     assert_eq!(
         refused(b"1,2,3\n", &mapping),
@@ -184,7 +184,7 @@ fn a_single_sample_or_none_is_no_run() {
 }
 
 #[test]
-fn files_that_are_no_text_are_named_and_never_shown() {
+fn binary_files_are_identified_and_never_printed() {
     let cases: [(&[u8], &str); 10] = [
         (b"\x89HDF\r\n\x1a\n", "HDF5"),
         (b"\x89MCAP0\r\n", "MCAP"),
@@ -208,7 +208,7 @@ fn files_that_are_no_text_are_named_and_never_shown() {
 }
 
 #[test]
-fn cells_are_shown_short_and_without_control_characters() {
+fn printed_cells_are_shortened_without_control_characters() {
     let long = "x".repeat(5000);
     let text = refused(
         format!("time,q_1,tau_1\n0,{long},0\n0.1,\u{9b}2J,0\n").as_bytes(),

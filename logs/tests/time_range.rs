@@ -29,7 +29,7 @@ fn positions(range: &str, text: &str, mapping: &Mapping) -> Vec<f64> {
 }
 
 #[test]
-fn samples_of_the_range_are_used() {
+fn only_samples_of_the_range_are_used() {
     let mapping = timed("q", "tau");
     let text = log(0.0, 10);
     assert_eq!(positions("[0.2:0.5]", &text, &mapping), [2.0, 3.0, 4.0]);
@@ -53,7 +53,7 @@ fn samples_of_the_range_are_used() {
 }
 
 #[test]
-fn the_note_says_that_a_log_is_read_in_part() {
+fn the_note_states_the_time_range_that_was_read() {
     let note = |range: &str, start: f64, mapping: &Mapping| {
         let log = part(range, &log(start, 10), mapping).expect("a log");
         log.note().expect("a note").to_owned()
@@ -74,55 +74,58 @@ fn the_note_says_that_a_log_is_read_in_part() {
 }
 
 #[test]
-fn defects_outside_the_range_do_not_matter() {
+fn errors_outside_the_range_are_ignored() {
     let mapping = timed("q", "tau");
     let text = log(0.0, 20)
         .replace("0.2,2,20", "0.2,,20")
         .replace("1.6,16", "1.65,16");
     assert_eq!(positions("[0.3:0.6]", &text, &mapping), [3.0, 4.0, 5.0]);
-    let told = part("[0.1:0.6]", &text, &mapping).expect_err("an empty cell");
-    assert!(told.starts_with("a.csv:4: "), "{told}");
-    let told = part("[0.3:1.9]", &text, &mapping).expect_err("a late sample");
-    assert!(told.contains(":18: the time is not uniform"), "{told}");
+    let message = part("[0.1:0.6]", &text, &mapping).expect_err("an empty cell");
+    assert!(message.starts_with("a.csv:4: "), "{message}");
+    let message = part("[0.3:1.9]", &text, &mapping).expect_err("a late sample");
+    assert!(
+        message.contains(":18: the time is not uniform"),
+        "{message}"
+    );
 }
 
 #[test]
-fn ranges_that_cannot_be_used_are_refused() {
-    let told = |range: &str, start: f64| {
+fn invalid_ranges_are_rejected() {
+    let message = |range: &str, start: f64| {
         part(range, &log(start, 10), &timed("q", "tau")).expect_err("refused")
     };
-    let reversed = told("[0.5:0.2]", 0.0);
+    let reversed = message("[0.5:0.2]", 0.0);
     assert!(
         reversed
             .starts_with("a.csv: the range of time `[0.5:0.2]` can't be used: it ends at 0.2 s"),
         "{reversed}"
     );
-    assert!(told("[x:1]", 0.0).contains("`x` is not a number of seconds"));
+    assert!(message("[x:1]", 0.0).contains("`x` is not a number of seconds"));
     assert_eq!(
-        told("[5:6]", 0.0),
+        message("[5:6]", 0.0),
         "a.csv[5:6]: the log has no sample in the range of time `[5:6]`: its times go from 0 s to 0.9 s\n  help: give a range within these times, in s"
     );
-    let stamps = told("[:-1]", 1.7e9);
+    let stamps = message("[:-1]", 1.7e9);
     assert!(
         stamps.contains("from 0 s to 0.9") && stamps.contains("counted from its first sample at 1"),
         "{stamps}"
     );
-    assert!(told("[0.55:0.58]", 0.0).contains("no sample in the range"));
-    assert!(told("[0.5:0.6]", 0.0).contains("the run has a single sample"));
+    assert!(message("[0.55:0.58]", 0.0).contains("no sample in the range"));
+    assert!(message("[0.5:0.6]", 0.0).contains("the run has a single sample"));
 }
 
 #[test]
-fn joined_files_are_read_in_part() {
+fn time_ranges_apply_to_joined_files() {
     let mapping = timed("q", "tau");
     let first = "t,q\n0,0\n0.1,1\n0.2,2\n0.3,3\n0.4,4\n";
     let second = "tau\n0\n10\n20\n30\n40\n";
     let files = [("a.csv", first.as_bytes()), ("b.csv", second.as_bytes())];
     let own = run("a.csv+b.csv[0.1:0.4]", &files, &mapping).expect("joined");
     assert_eq!(loaded(&own), (vec![1.0, 2.0, 3.0], vec![10.0, 20.0, 30.0]));
-    let told = run("a.csv[0.1:0.4]+b.csv", &files, &mapping).expect_err("misplaced");
+    let message = run("a.csv[0.1:0.4]+b.csv", &files, &mapping).expect_err("misplaced");
     assert!(
-        told.contains("a range of time, in s, follows the last file of a run"),
-        "{told}"
+        message.contains("a range of time, in s, follows the last file of a run"),
+        "{message}"
     );
     // By time, with another start.
     let rows = (0..20).map(|k| {
@@ -149,7 +152,7 @@ fn joined_files_are_read_in_part() {
 }
 
 #[test]
-fn resampled_logs_are_read_in_part() {
+fn time_ranges_apply_to_resampled_logs() {
     let mapping = Mapping {
         resample: Some(20.0),
         ..timed("q", "tau")
@@ -164,7 +167,7 @@ fn resampled_logs_are_read_in_part() {
 }
 
 #[test]
-fn a_file_whose_name_has_brackets_wins() {
+fn existing_files_with_brackets_take_precedence_over_ranges() {
     let (whole, named) = (log(0.0, 10), log(0.0, 4));
     let files = [
         ("a.csv", whole.as_bytes()),

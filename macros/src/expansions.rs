@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_kept_is_read_again_by_its_key_alone() {
+    fn cached_expansions_are_read_only_by_their_key() {
         let folder = folder("kept");
         assert_eq!(read(&folder, "key"), None);
         keep(&folder, "key", &expansion("impl A {} // ⋯"));
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn damaged_files_and_missing_folders_are_as_if_nothing_were_there() {
+    fn damaged_files_and_missing_folders_are_cache_misses() {
         let folder = folder("damaged");
         let whole = expansion("impl A { fn a() {} }");
         keep(&folder, "key", &whole);
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn old_files_make_room() {
+    fn old_cache_files_are_evicted() {
         let folder = folder("room");
         for at in 0..MOST + 5 {
             keep(&folder, &at.to_string(), &expansion("impl A {}"));

@@ -72,7 +72,7 @@ def agree(found, expected, tolerance, what):
 
 
 @pytest.mark.parametrize("stem", STEMS)
-def test_the_command_line_has_the_same_values(stem, command, tmp_path):
+def test_values_equal_those_of_the_command_line(stem, command, tmp_path):
     robot = robot_of(stem)
     for name in ASKED:
         function = robot.function(name)
@@ -105,7 +105,7 @@ def compiled():
 
 
 @pytest.mark.parametrize("stem", STEMS)
-def test_compiled_rust_has_the_same_values(stem, compiled):
+def test_values_equal_those_of_compiled_rust(stem, compiled):
     robot = robot_of(stem)
     names, questions, found = [], [], []
     for name in robot.functions:

@@ -6,7 +6,7 @@ import re
 DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs"
 
 
-def test_languages_side_by_side(capsys, monkeypatch):
+def test_the_interfaces_page_shows_the_actual_output(capsys, monkeypatch):
     monkeypatch.chdir(DOCS.parent)
     text = (DOCS / "interfaces.md").read_text()
     shown = re.search(r"```text\n(.*?)```", text, re.DOTALL).group(1)

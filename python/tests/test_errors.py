@@ -8,7 +8,7 @@ import pytest
 import overact
 
 
-def test_every_error_of_a_description_is_told_at_its_line(dualv):
+def test_all_description_errors_are_located(dualv):
     text = dualv.text.replace('l_ab = "0.28 m"', 'l_ab = "0.28 kg"').replace(
         'motion = "planar"', 'motion = "plannar"'
     )
@@ -29,27 +29,27 @@ def test_every_error_of_a_description_is_told_at_its_line(dualv):
     assert again.problems == error.problems and str(again) == str(error)
 
 
-def test_what_is_no_toml_is_told_too():
+def test_invalid_toml_is_located():
     with pytest.raises(overact.DescriptionError) as caught:
         overact.Robot.from_string("name = ")
     assert (caught.value.file, caught.value.line) == ("robot.toml", 1)
 
 
-def test_a_file_that_is_not_there(tmp_path):
+def test_missing_files_raise_data_errors(tmp_path):
     with pytest.raises(overact.DataError, match="can't be read") as caught:
         overact.Robot(tmp_path / "none.toml")
     assert caught.value.file == str(tmp_path / "none.toml")
     assert "overact new" in caught.value.help
 
 
-def test_a_file_that_is_no_text(tmp_path):
+def test_binary_files_raise_data_errors(tmp_path):
     path = pathlib.Path(tmp_path, "broken.toml")
     path.write_bytes(b'name = "\xff\xfe"')
     with pytest.raises(overact.DataError, match="can't be read"):
         overact.Robot(path)
 
 
-def test_an_experiment_that_can_not_be_made(emps):
+def test_invalid_experiments_are_rejected(emps):
     with pytest.raises(overact.OveractError, match="no run `nonsense`"):
         emps.simulate("nonsense")
     with pytest.raises(ValueError, match="no parameters m_9"):

@@ -8,10 +8,10 @@ import numpy as np
 EXAMPLES = pathlib.Path(__file__).resolve().parents[1] / "examples"
 
 
-def test_dualv(capsys):
+def test_dualv_example_recovers_the_true_parameters(capsys):
     found = runpy.run_path(str(EXAMPLES / "dualv.py"), run_name="__main__")
-    said = capsys.readouterr().out
-    assert "<Robot DualV: r = 3, n = 4" in said and "DualV: 2 training runs" in said
+    printed = capsys.readouterr().out
+    assert "<Robot DualV: r = 3, n = 4" in printed and "DualV: 2 training runs" in printed
     result, robot = found["result"], found["robot"]
     # The true parameters of the robot are known.
     truth = robot.true_values
@@ -23,7 +23,7 @@ def test_dualv(capsys):
     np.testing.assert_allclose(found["torques"], exact, atol=0.1)
 
 
-def test_pendulum(tmp_path, monkeypatch):
+def test_pendulum_example_recovers_the_true_parameters(tmp_path, monkeypatch):
     # Away from the repository, as after `pip install overact`.
     copy = tmp_path / "pendulum.py"
     copy.write_text((EXAMPLES / "pendulum.py").read_text(encoding="utf-8"), encoding="utf-8")
@@ -34,5 +34,5 @@ def test_pendulum(tmp_path, monkeypatch):
         assert abs(one.value - found["truth"][name]) < 6 * one.correlated_standard_deviation, name
 
 
-def test_no_example_is_left_out():
+def test_all_examples_are_tested():
     assert sorted(path.name for path in EXAMPLES.glob("*.py")) == ["dualv.py", "pendulum.py"]

@@ -18,7 +18,7 @@ def states(count, seed=1):
     return poses, random.normal(size=(count, 3)), random.normal(size=(count, 3))
 
 
-def test_a_sample_is_the_same_in_every_form(dualv):
+def test_single_samples_equal_those_of_arrays(dualv):
     poses, twists, accelerations = states(200)
     many = dualv.idm_red_platform(poses, twists, accelerations)
     assert many.shape == (200, 3, 64) and many.dtype == np.float64
@@ -41,7 +41,7 @@ def test_a_sample_is_the_same_in_every_form(dualv):
     assert dualv.idm_red_platform(np.empty((0, 3)), TWIST, ACCELERATION).shape == (0, 3, 64)
 
 
-def test_other_numbers_and_layouts_are_converted(dualv):
+def test_other_dtypes_and_memory_layouts_are_converted(dualv):
     poses, twists, accelerations = states(130)
     expected = dualv.mass_matrix(poses, np.ones(68))
     wide = np.zeros((130, 6))
@@ -55,13 +55,13 @@ def test_other_numbers_and_layouts_are_converted(dualv):
     )
 
 
-def test_more_samples_than_a_stretch(dualv):
+def test_arrays_longer_than_a_block_are_evaluated(dualv):
     poses, twists, _ = states(70_000)
     whole = dualv.joint_velocities(poses, twists)
     np.testing.assert_array_equal(whole[-30:], dualv.joint_velocities(poses[-94:], twists[-94:])[-30:])
 
 
-def test_results_go_where_they_are_wanted(dualv):
+def test_results_are_written_into_out(dualv):
     poses, twists, accelerations = states(50)
     expected = dualv.idm_red_platform(poses, twists, accelerations)
     room = np.full((100, 3, 64), np.nan)
@@ -72,7 +72,7 @@ def test_results_go_where_they_are_wanted(dualv):
 
 
 @pytest.mark.parametrize(
-    "out, error, says",
+    "out, error, message",
     [
         (np.zeros((2, 3, 64), dtype=np.float32), TypeError, "float32"),
         (np.zeros((3, 64)), ValueError, r"\(3, 64\).*\(2, 3, 64\)"),
@@ -81,13 +81,13 @@ def test_results_go_where_they_are_wanted(dualv):
         ([[0.0]], TypeError, "a list"),
     ],
 )
-def test_outputs_that_do_not_fit_are_refused(dualv, out, error, says):
+def test_out_arrays_of_wrong_shape_or_type_are_rejected(dualv, out, error, message):
     poses, twists, accelerations = states(2)
-    with pytest.raises(error, match=says):
+    with pytest.raises(error, match=message):
         dualv.idm_red_platform(poses, twists, accelerations, out=out)
 
 
-def test_outputs_that_can_not_be_written_are_refused(dualv):
+def test_read_only_and_overlapping_out_arrays_are_rejected(dualv):
     poses, _, _ = states(4)
     kept = np.zeros((4, 3))
     kept.flags.writeable = False
@@ -102,7 +102,7 @@ def test_outputs_that_can_not_be_written_are_refused(dualv):
 
 
 @pytest.mark.parametrize(
-    "pose, error, says",
+    "pose, error, message",
     [
         ([0.0, 0.0], ValueError, r"`pose` has the shape \(2,\).*3 numbers \(x, y, phi\)"),
         (np.zeros((3, 5)), ValueError, r"`pose.T`"),
@@ -114,12 +114,12 @@ def test_outputs_that_can_not_be_written_are_refused(dualv):
         (np.ma.masked_array(np.zeros(3), [0, 1, 0]), TypeError, "masked"),
     ],
 )
-def test_inputs_that_are_no_rows_are_refused(dualv, pose, error, says):
-    with pytest.raises(error, match=says):
+def test_inputs_of_wrong_shape_are_rejected(dualv, pose, error, message):
+    with pytest.raises(error, match=message):
         dualv.joints(pose)
 
 
-def test_calls_that_do_not_fit_are_refused(dualv):
+def test_invalid_calls_are_rejected(dualv):
     poses, twists, _ = states(5)
     with pytest.raises(TypeError, match="needs `twist`"):
         dualv.joint_velocities(poses)
@@ -139,7 +139,7 @@ def test_calls_that_do_not_fit_are_refused(dualv):
         dualv.idm_red_platfrom
 
 
-def test_states_without_a_value_name_the_sample(dualv):
+def test_failing_samples_are_reported_by_index(dualv):
     poses, _, _ = states(300)
     poses[211, 1] = np.nan
     with pytest.raises(overact.EvaluationError, match="`pose` has a number that is not finite") as error:
@@ -152,7 +152,7 @@ def test_states_without_a_value_name_the_sample(dualv):
     assert isinstance(pickle.loads(pickle.dumps(error.value)), overact.EvaluationError)
 
 
-def test_states_without_a_value_can_be_rows_of_nan(dualv):
+def test_failing_samples_can_become_nan(dualv):
     poses, _, _ = states(300)
     expected = dualv.inverse_jacobian(poses)
     poses[211, 1], poses[77], poses[0, 2] = np.inf, [9.0, 0.0, 0.0], np.nan
@@ -163,7 +163,7 @@ def test_states_without_a_value_can_be_rows_of_nan(dualv):
     assert np.isnan(dualv.inverse_jacobian([9.0, 0.0, 0.0], invalid="nan")).all()
 
 
-def test_forms_agree(dualv):
+def test_all_forms_of_a_function_agree(dualv):
     poses, twists, accelerations = states(40)
     expected = dualv.idm_red_platform_base(poses, twists, accelerations)
     joints = dualv.joints(poses)
@@ -214,7 +214,7 @@ def test_dynamics_are_linear_in_the_parameters(dualv):
         dualv.parameter_vector({"zz_1_leg1": 1.0})
 
 
-def test_other_threads_run_meanwhile(dualv):
+def test_evaluation_releases_the_interpreter_lock(dualv):
     poses, twists, accelerations = states(64_000)
     out = np.empty((64_000, 3, 64))
     dualv.idm_red_platform(poses, twists, accelerations, out=out)
@@ -237,7 +237,7 @@ def test_other_threads_run_meanwhile(dualv):
     assert turns > 20, f"{turns} turns in {seconds} s"
 
 
-def test_what_a_robot_says_of_itself(dualv, emps):
+def test_robot_attributes_describe_the_dualv(dualv, emps):
     assert (dualv.name, dualv.r, dualv.n, len(dualv.joint_names)) == ("DualV", 3, 4, 12)
     assert repr(dualv) == (
         "<Robot DualV: r = 3, n = 4, 12 joints, parameters: 64 standard, 49 base, 4 payload>"
@@ -259,7 +259,7 @@ def test_what_a_robot_says_of_itself(dualv, emps):
     np.testing.assert_array_equal(again.joints(POSE), dualv.joints(POSE))
 
 
-def test_costs_are_those_of_the_command_line(dualv, command):
+def test_costs_equal_those_of_the_command_line(dualv, command):
     document = command.json("inspect", dualv.file, "--effort", "quick")
     cost = dualv.costs()
     for function in document["functions"]:

@@ -47,7 +47,7 @@ def without_truth(document):
     return [without_truth(one) for one in document] if isinstance(document, list) else document
 
 
-def test_runs_are_those_of_the_command_line(robot, runs, command, tmp_path):
+def test_simulated_runs_equal_those_of_the_command_line(robot, runs, command, tmp_path):
     command("simulate", robot.file, "-o", "log.csv")
     assert [one.name for one in runs] == list(robot.runs)
     for run in runs:
@@ -62,12 +62,12 @@ def test_runs_are_those_of_the_command_line(robot, runs, command, tmp_path):
     assert repr(runs[0]).startswith(f"<run {runs[0].name}: {len(runs[0])} samples at ")
 
 
-def test_runs_are_made_as_one_wishes(robot, runs):
+def test_simulation_options_are_applied(robot, runs):
     name = robot.runs[0]
-    heard = []
-    (one,) = robot.simulate(name, seed=7, progress=lambda part, what: heard.append((part, what)))
+    calls = []
+    (one,) = robot.simulate(name, seed=7, progress=lambda part, what: calls.append((part, what)))
     assert one.name == name and not np.array_equal(one.torques, runs[0].torques)
-    assert heard and heard[-1][1] == name and all(0 <= part <= 1 for part, _ in heard)
+    assert calls and calls[-1][1] == name and all(0 <= part <= 1 for part, _ in calls)
     parameter = next(iter(robot.true_values))
     (other,) = robot.simulate([name], parameters={parameter: 2 * robot.true_values[parameter]})
     assert not np.array_equal(other.torques, runs[0].torques)
@@ -75,16 +75,16 @@ def test_runs_are_made_as_one_wishes(robot, runs):
         robot.simulate(name, progress=lambda part, what: 1 / 0)
 
 
-def test_the_document_is_that_of_the_command_line(robot, result, command):
+def test_the_json_result_equals_that_of_the_command_line(robot, result, command):
     assert result.to_dict() == command.json("identify", robot.file)
     assert json.loads(result.to_json()) == result.to_dict()
 
 
-def test_the_text_is_that_of_the_command_line(robot, result, command):
+def test_the_text_result_equals_that_of_the_command_line(robot, result, command):
     assert str(result).strip() == command("identify", robot.file).strip()
 
 
-def test_all_kinds_of_data_give_the_same(robot, split, command, tmp_path):
+def test_all_data_types_give_the_same_estimates(robot, split, command, tmp_path):
     own, held = split
     expected = without_truth(numbers(overact.identify(robot, own, validation=held).to_dict()))
     paths = []
@@ -115,29 +115,29 @@ def test_all_kinds_of_data_give_the_same(robot, split, command, tmp_path):
     for kind, data in kinds.items():
         # The frequency computed from times differs in its last digits.
         found = overact.identify(robot, data, validation=held)
-        assert_alike(without_truth(numbers(found.to_dict())), expected, kind)
+        assert_same_document(without_truth(numbers(found.to_dict())), expected, kind)
     files = ["--data", *map(str, paths)]
     document = command.json("identify", robot.file, *files)
     own_document = overact.identify(robot, paths).to_dict()
     assert own_document == document
 
 
-def assert_alike(found, expected, what):
+def assert_same_document(found, expected, what):
     if isinstance(expected, dict):
         assert found.keys() == expected.keys(), what
         for key in expected:
-            assert_alike(found[key], expected[key], f"{what}.{key}")
+            assert_same_document(found[key], expected[key], f"{what}.{key}")
     elif isinstance(expected, list):
         assert len(found) == len(expected), what
         for at, (one, other) in enumerate(zip(found, expected)):
-            assert_alike(one, other, f"{what}[{at}]")
+            assert_same_document(one, other, f"{what}[{at}]")
     elif isinstance(expected, float):
         assert found == pytest.approx(expected, rel=1e-5, abs=1e-9), what
     elif not isinstance(expected, str):
         assert found == expected, what
 
 
-def test_estimates_are_objects(robot, result):
+def test_result_objects_have_named_estimates(robot, result):
     assert result.robot == robot.name and len(result.verdicts) == 2
     assert result.verdict.subject == "platform projection" and result.verdict.reasons
     assert result.trusted == (result.verdict.grade == "use")
@@ -169,7 +169,7 @@ def test_estimates_are_objects(robot, result):
     assert all(name in text for name in result.recommended)
 
 
-def test_the_report_is_a_page(robot, result, tmp_path):
+def test_the_report_is_well_formed_html(robot, result, tmp_path):
     page = result.report()
     title = xml.dom.minidom.parseString(page.replace("<!DOCTYPE html>\n", "")).getElementsByTagName("title")
     assert title[0].firstChild.data == f"Identification of {robot.name}"
@@ -186,7 +186,7 @@ def test_the_report_is_a_page(robot, result, tmp_path):
         result.save_report(tmp_path / "report.pdf")
 
 
-def test_parameters_go_back_into_the_robot(robot, result, command, tmp_path):
+def test_identified_parameters_are_usable_by_the_robot(robot, result, command, tmp_path):
     result.save_parameters(tmp_path / "parameters.toml")
     command("simulate", robot.file, "--parameters", "parameters.toml", "-o", "logs/")
     values = robot.parameter_vector(result.consistent)
@@ -195,7 +195,7 @@ def test_parameters_go_back_into_the_robot(robot, result, command, tmp_path):
     assert len(run) > 0
 
 
-def test_no_input_is_overwritten(split, tmp_path):
+def test_inputs_are_never_overwritten(split, tmp_path):
     path = tmp_path / "robot.toml"
     text = (ROBOTS / f"{NAME}.toml").read_text(encoding="utf-8")
     path.write_text(text, encoding="utf-8")
@@ -221,7 +221,7 @@ def test_no_input_is_overwritten(split, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "change, error, says",
+    "change, error, message",
     [
         (lambda one: one.pop("time"), overact.DataError, "time"),
         (lambda one: one.update(time=one["time"] ** 2), overact.DataError, "uniform"),
@@ -239,14 +239,14 @@ def test_no_input_is_overwritten(split, tmp_path):
         (lambda one: one.update({list(one)[1]: np.zeros((2, 2, 2))}), overact.DataError, "3 axes"),
     ],
 )
-def test_data_that_can_not_be_used_are_refused(robot, split, change, error, says):
+def test_invalid_data_are_rejected(robot, split, change, error, message):
     columns = dict(split[0][0].to_dict())
     change(columns)
-    with pytest.raises(error, match=says):
+    with pytest.raises(error, match=message):
         overact.identify(robot, columns)
 
 
-def test_other_mistakes_are_told(robot, split, tmp_path):
+def test_invalid_arguments_are_rejected(robot, split, tmp_path):
     run = split[0][0]
     with pytest.raises(TypeError, match="is a int, which is not a run"):
         overact.identify(robot, 7)
@@ -268,7 +268,7 @@ def test_other_mistakes_are_told(robot, split, tmp_path):
         overact.identify(robot, run, calibrate="some")
 
 
-def test_columns_that_are_no_numbers_are_named(robot, split):
+def test_non_numeric_columns_are_rejected_by_name(robot, split):
     polars = pytest.importorskip("polars")
     columns = split[0][0].to_dict()
     first = list(columns)[1]
@@ -291,4 +291,4 @@ def test_times_may_be_durations(robot, split):
     table = polars.DataFrame({**columns, "time": steps})
     found = overact.identify(robot, table).to_dict()
     expected = overact.identify(robot, run).to_dict()
-    assert_alike(numbers(found)["estimates"], numbers(expected)["estimates"], "durations")
+    assert_same_document(numbers(found)["estimates"], numbers(expected)["estimates"], "durations")

@@ -11,7 +11,7 @@ import overact
 
 
 @pytest.mark.parametrize("name", ["idm_red_platform", "inverse_jacobian", "mass_matrix_base"])
-def test_expressions_have_the_values_of_the_function(dualv, name):
+def test_expressions_evaluate_to_the_values_of_the_function(dualv, name):
     pytest.importorskip("sympy")
     symbolic = dualv.to_sympy(name)
     function = dualv.function(name)
@@ -24,7 +24,7 @@ def test_expressions_have_the_values_of_the_function(dualv, name):
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
 
 
-def test_expressions_can_be_looked_at():
+def test_expressions_can_be_inlined_and_simplified():
     sympy = pytest.importorskip("sympy")
     robot = overact.Robot(ROBOTS / "emps.toml")
     symbolic = robot.to_sympy("idm_red_platform")
@@ -38,7 +38,7 @@ def test_expressions_can_be_looked_at():
     assert sympy.simplify(inlined[0, column] - acceleration) == 0
 
 
-def test_without_sympy_there_is_a_hint(dualv, monkeypatch):
+def test_missing_sympy_raises_an_installation_hint(dualv, monkeypatch):
     usual = builtins.__import__
 
     def without(name, *rest):
@@ -51,7 +51,7 @@ def test_without_sympy_there_is_a_hint(dualv, monkeypatch):
         dualv.to_sympy("joints")
 
 
-def test_a_function_that_is_not_there_is_told(dualv):
+def test_unknown_functions_are_rejected_with_a_suggestion(dualv):
     pytest.importorskip("sympy")
     with pytest.raises(AttributeError, match="did you mean `joints`"):
         dualv.to_sympy("joint")

@@ -14,7 +14,7 @@ from conftest import ROBOTS
 HERE = pathlib.Path(__file__).resolve().parents[1]
 
 
-def test_the_stub_of_functions_is_what_the_table_says():
+def test_the_function_stub_is_fresh():
     spec = importlib.util.spec_from_file_location("functions", HERE / "tools" / "functions.py")
     tool = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(tool)
@@ -22,7 +22,7 @@ def test_the_stub_of_functions_is_what_the_table_says():
 
 
 @pytest.mark.parametrize("stem", ["dualv", "emps", "five_bar", "hexapod", "ankle"])
-def test_all_functions_of_robots_are_in_the_stub(stem):
+def test_the_stub_has_all_robot_functions(stem):
     stub = (HERE / "overact" / "_functions.pyi").read_text(encoding="utf-8")
     for name in overact.Robot(ROBOTS / f"{stem}.toml").functions:
         assert f"    {name}: Function\n" in stub, name
@@ -33,7 +33,7 @@ def test_the_wheel_is_typed():
     assert (pathlib.Path(overact.__file__).parent / "_overact.pyi").is_file()
 
 
-def test_the_stub_of_the_compiled_half_has_all_of_it():
+def test_the_stub_has_all_items_of_the_compiled_module():
     stub = (HERE / "overact" / "_overact.pyi").read_text(encoding="utf-8")
     from overact import _overact
 
@@ -46,7 +46,7 @@ def test_the_stub_of_the_compiled_half_has_all_of_it():
                 assert f"def {member}(" in stub, f"{name}.{member}"
 
 
-def test_everything_that_is_offered_is_documented():
+def test_all_public_items_are_documented():
     for name in overact.__all__:
         one = getattr(overact, name)
         if inspect.isclass(one) or inspect.isfunction(one):
@@ -56,7 +56,7 @@ def test_everything_that_is_offered_is_documented():
                 assert inspect.getdoc(what), f"{name}.{member}"
 
 
-def test_types_are_right(tmp_path):
+def test_mypy_accepts_valid_use_only(tmp_path):
     pytest.importorskip("mypy")
     (tmp_path / "use.py").write_text(
         "import numpy as np\nimport overact\n"

@@ -113,7 +113,7 @@ mod tests {
     use super::{Plot, chart_sheet};
 
     #[test]
-    fn a_sheet_is_well_formed_and_keeps_its_plots() {
+    fn a_chart_sheet_is_well_formed_and_contains_its_plots() {
         let curve = |name: &str| (name.to_owned(), vec![0.0, 1.0], vec![2.0, f64::NAN]);
         let plot = Plot {
             title: String::from("a < b"),

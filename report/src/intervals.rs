@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn an_estimate_and_the_truth_are_inside_or_outside() {
+    fn intervals_are_compared_with_estimate_truth_and_zero() {
         let inside = parameter(2.0, [1.5, 2.5], Some(1.5));
         assert!(!is_outside(&inside) && !misses_truth(&inside));
         assert!(excludes_zero(&inside));

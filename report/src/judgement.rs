@@ -101,7 +101,7 @@ mod tests {
     use super::quantity;
 
     #[test]
-    fn a_quantity_has_its_unit_and_nothing_is_none() {
+    fn quantities_have_units_and_nan_is_omitted() {
         assert_eq!(quantity(0.001_234_5, "rad").as_deref(), Some("0.00123 rad"));
         assert_eq!(quantity(2.0, "").as_deref(), Some("2"));
         assert_eq!(quantity(f64::INFINITY, "").as_deref(), Some("infinite"));

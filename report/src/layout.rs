@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn hostile_cells_stay_in_their_columns() {
+    fn long_and_control_character_cells_keep_columns_aligned() {
         let name = format!("a\u{1b}[31m\nb\u{202e}{}", "x".repeat(5000));
         let row = |name: &str, value: &str| vec![name.to_owned(), value.to_owned()];
         let text = table(&["name", "value"], vec![row(&name, "1"), row("m", "2")]);
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wide_table_comes_in_parts_that_fit_and_loses_no_cell() {
+    fn wide_tables_are_split_without_losing_cells() {
         let names: Vec<String> = (0..9).map(|column| format!("column {column:9}")).collect();
         let header: Vec<&str> = names.iter().map(String::as_str).collect();
         let row = |row: usize| (0..9).map(|column| format!("r{row}c{column}")).collect();
@@ -192,14 +192,14 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_one_line() {
+    fn line_breaks_and_control_characters_are_replaced() {
         let mut text = String::new();
         line(&mut text, "a\nb\u{1b}[2J");
         assert_eq!(text, "a b\u{FFFD}[2J\n");
     }
 
     #[test]
-    fn a_paragraph_is_broken_between_words_and_loses_none() {
+    fn paragraphs_are_wrapped_without_losing_words() {
         let words = "one two three ".repeat(30);
         let mut text = String::new();
         paragraph(&mut text, "  - ", &words);
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn long_sums_go_on_below_themselves() {
+    fn long_sums_are_wrapped_with_indentation() {
         let sum = "m_1 + ".repeat(40);
         let rows = [("a".to_owned(), "b".to_owned()), ("longer".to_owned(), sum)];
         let text = definitions(&rows, " = ");

@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn figures_have_their_definitions() {
+    fn error_figures_match_their_definitions() {
         let [rms, error, fit] = cells(Some(&line("leg1", "N m", 2.0)));
         assert_eq!(
             (rms.as_str(), error.as_str(), fit.as_str()),
@@ -175,13 +175,13 @@ mod tests {
     }
 
     #[test]
-    fn no_norm_mixes_units() {
+    fn norms_never_mix_units() {
         let (force, moment) = (line("x", "N", 1.0), line("phi", "N m", 3.0));
         let mixed = [force.clone(), moment];
         assert!(is_mixed(&mixed));
         assert!((relative(&mixed, 1.5) - 3.0).abs() < 1e-12);
         assert_eq!(relative_words(&mixed, 1.5, 3), "at most 3 % of a torque");
-        let alike = [force.clone(), force];
-        assert_eq!(relative_words(&alike, 1.0, 3), "1 %");
+        let one_unit = [force.clone(), force];
+        assert_eq!(relative_words(&one_unit, 1.0, 3), "1 %");
     }
 }

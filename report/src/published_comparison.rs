@@ -239,7 +239,7 @@ mod tests {
     use super::is_run;
 
     #[test]
-    fn logs_are_those_of_the_runs_that_they_are_named_after() {
+    fn logs_are_matched_to_runs_by_name() {
         for run in [
             "trajectory 1",
             "log_trajectory_1.csv",

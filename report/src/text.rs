@@ -59,13 +59,13 @@ mod tests {
     use super::{escape, fitted, last_part, visible};
 
     #[test]
-    fn a_path_is_called_by_its_file() {
+    fn paths_are_shortened_to_file_names() {
         assert_eq!(last_part("logs/a/run.csv"), "run.csv");
         assert_eq!(last_part("loaded 1"), "loaded 1");
     }
 
     #[test]
-    fn no_text_becomes_markup() {
+    fn markup_characters_are_escaped() {
         assert_eq!(
             escape("<script>\"a\" & 'b'\u{0}"),
             "&lt;script&gt;&quot;a&quot; &amp; &#39;b&#39;\u{FFFD}"
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_stays_on_its_line_and_turns_nothing() {
+    fn names_are_printed_without_control_characters() {
         assert_eq!(visible("a\r\nb\u{2028}c"), "a  b c");
         assert_eq!(visible("\u{1b}[31mred"), "\u{FFFD}[31mred");
         assert_eq!(visible("leg\u{202e}1"), "leg\u{FFFD}1");
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_name_keeps_its_ends() {
+    fn long_names_are_shortened_in_the_middle() {
         assert_eq!(fitted("fs_1_leg1", 9), "fs_1_leg1");
         assert_eq!(fitted("fs_1_shoulder_left", 9), "fs_1…left");
         assert_eq!(fitted("αβγδεζ", 4), "αβ…ζ");

@@ -133,7 +133,7 @@ mod tests {
     use super::{Code, Error, Problem};
 
     #[test]
-    fn a_problem_reads_like_a_compiler_error() {
+    fn problems_are_printed_like_compiler_errors() {
         let problem = Problem::new(Code::MISSING_KEY, "no column")
             .file("log.csv")
             .line(Some(3));

@@ -159,7 +159,7 @@ fn identified(robot: &Robot) -> Identification {
 }
 
 #[test]
-fn a_name_has_one_sum_and_one_value_in_a_document() {
+fn base_parameter_names_have_one_sum_and_one_value() {
     let names: Vec<String> = if is_full() {
         of_many(library())
     } else {

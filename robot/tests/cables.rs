@@ -144,8 +144,8 @@ fn states(robot: &Robot, count: usize) -> Vec<State> {
     (0..count).map(state).collect()
 }
 
-const FIRST: [f64; 3] = [0.75, -0.15, 1.0 / 60.0];
-const SECOND: [f64; 4] = [-49.0 / 18.0, 1.5, -0.15, 1.0 / 90.0];
+const FIRST_DIFFERENCE: [f64; 3] = [0.75, -0.15, 1.0 / 60.0];
+const SECOND_DIFFERENCE: [f64; 4] = [-49.0 / 18.0, 1.5, -0.15, 1.0 / 90.0];
 
 /// Lengths at the pose displaced by a step.
 fn lengths(robot: &Robot, pose: &[f64], step: &[f64]) -> Vec<f64> {
@@ -155,7 +155,7 @@ fn lengths(robot: &Robot, pose: &[f64], step: &[f64]) -> Vec<f64> {
     ask(robot, Function::ActuatorPositions, &[&pose], n)
 }
 
-fn close(name: &str, found: &[f64], expected: &[f64], tolerance: f64) {
+fn assert_close(name: &str, found: &[f64], expected: &[f64], tolerance: f64) {
     let scale = expected.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
     for (found, expected) in found.iter().zip(expected) {
         let error = (found - expected).abs() / scale;
@@ -173,7 +173,7 @@ fn compare(text: &str, least: f64) {
         let jacobian = ask(&robot, Function::InverseJacobian, &[&state.pose], n * r);
         let mut expected = vec![0.0; n * r];
         for column in 0..r {
-            for (k, weight) in FIRST.iter().enumerate() {
+            for (k, weight) in FIRST_DIFFERENCE.iter().enumerate() {
                 let size = 1e-3 * (k + 1) as f64;
                 let along = |size: f64| {
                     let mut step = vec![0.0; r];
@@ -185,7 +185,7 @@ fn compare(text: &str, least: f64) {
                 }
             }
         }
-        close("inverse_jacobian", &jacobian, &expected, 1e-9);
+        assert_close("inverse_jacobian", &jacobian, &expected, 1e-9);
         let path = |t: f64| -> Vec<f64> {
             let both = state.twist.iter().zip(&state.acceleration);
             both.map(|(v, a)| v * t + 0.5 * a * t * t).collect()
@@ -193,9 +193,9 @@ fn compare(text: &str, least: f64) {
         let time = 5e-3;
         let mut second: Vec<f64> = lengths(&robot, &state.pose, &path(0.0))
             .iter()
-            .map(|length| SECOND[0] * length)
+            .map(|length| SECOND_DIFFERENCE[0] * length)
             .collect();
-        for (k, weight) in SECOND.iter().enumerate().skip(1) {
+        for (k, weight) in SECOND_DIFFERENCE.iter().enumerate().skip(1) {
             let t = k as f64 * time;
             let both = [t, -t].map(|t| lengths(&robot, &state.pose, &path(t)));
             for (row, sum) in second.iter_mut().enumerate() {
@@ -205,7 +205,7 @@ fn compare(text: &str, least: f64) {
         second.iter_mut().for_each(|sum| *sum /= time * time);
         let inputs: [&[f64]; 3] = [&state.pose, &state.twist, &state.acceleration];
         let accelerations = ask(&robot, Function::JointAccelerations, &inputs, n);
-        close("joint_accelerations", &accelerations, &second, 1e-8);
+        assert_close("joint_accelerations", &accelerations, &second, 1e-8);
         // A tension pulls: its power is the negative of that of its length.
         let tensions: Vec<f64> = (0..n).map(|_| 10.0 + dice.number()).collect();
         let inputs = ask(
@@ -220,7 +220,7 @@ fn compare(text: &str, least: f64) {
                 .sum()
         };
         let expected: Vec<f64> = (0..r).map(work).collect();
-        close("project_platform", &inputs, &expected, 1e-9);
+        assert_close("project_platform", &inputs, &expected, 1e-9);
         tensions_of(&robot, &state, least);
     }
 }
@@ -253,7 +253,7 @@ fn tensions_of(robot: &Robot, state: &State, least: f64) {
         &[&state.pose, &tensions],
         r,
     );
-    close("tensions", &found, &wanted, 1e-9);
+    assert_close("tensions", &found, &wanted, 1e-9);
     assert!(tensions.iter().all(|t| *t >= least), "{tensions:?}");
     // At the optimum, t - t_min is the positive part of a combination of the rows of the Jacobian.
     let jacobian = ask(robot, Function::InverseJacobian, &[&state.pose], n * r);
@@ -367,7 +367,7 @@ fn a_point_inside_the_pulley_and_an_infeasible_motion_are_errors() {
 }
 
 #[test]
-fn descriptions_of_impossible_cables_are_refused() {
+fn impossible_cables_are_rejected() {
     let refused = |text: String, words: &str| {
         let error = Robot::from_text("cables.toml", &text).err();
         let text = error.map(|error| error.to_string()).unwrap_or_default();
@@ -489,7 +489,7 @@ fn failed(found: &Identification) -> String {
 }
 
 #[test]
-fn the_mass_of_a_measured_cable_robot_is_in_its_interval() {
+fn the_interval_covers_the_mass_of_a_measured_cable_robot() {
     let Some(log) = measured() else { return };
     let found = identified(&ocdpr("[\"fs\"]"), &log);
     println!("{}", failed(&found));
@@ -522,7 +522,7 @@ fn the_mass_of_a_measured_cable_robot_is_in_its_interval() {
 }
 
 #[test]
-fn friction_that_the_model_lacks_is_named() {
+fn unmodelled_friction_is_detected() {
     let Some(log) = measured() else { return };
     let words = failed(&identified(&ocdpr("[]"), &log));
     println!("{words}");
@@ -530,7 +530,7 @@ fn friction_that_the_model_lacks_is_named() {
 }
 
 #[test]
-fn a_slack_cable_is_named() {
+fn a_slack_cable_is_detected() {
     let Some(log) = measured() else { return };
     let text = ocdpr("[\"fs\"]").replace("\"$7\"", "\"$7 - 20\"");
     let words = failed(&identified(&text, &log));
@@ -541,7 +541,7 @@ fn a_slack_cable_is_named() {
 }
 
 #[test]
-fn a_drifting_load_cell_is_refused() {
+fn data_of_a_drifting_load_cell_are_unusable() {
     let Some(log) = measured() else { return };
     let text = ocdpr("[\"fs\"]").replace("\"$7\"", "\"$7 + 1.0 * ($1 - 11)\"");
     let found = identified(&text, &log);

@@ -100,7 +100,7 @@ fn identified(change: impl Fn(usize, &mut f64, &mut f64)) -> Identification {
 }
 
 #[test]
-fn a_quill_in_millimetres_is_named() {
+fn a_prismatic_joint_in_millimetres_is_detected() {
     let clean = identified(|_, _, _| {});
     assert_eq!(clean.grade(), Grade::Use);
     let result = identified(|drive, position, _| {
@@ -126,7 +126,7 @@ fn a_torque_in_millinewton_metres_is_not_called_crosstalk() {
 }
 
 #[test]
-fn two_dead_encoders_are_no_equal_columns() {
+fn two_dead_encoders_are_not_reported_as_duplicate_columns() {
     let result = identified(|drive, position, _| {
         if drive == 1 || drive == 3 {
             *position = 0.0;
@@ -162,7 +162,7 @@ fn reasons_of_five_bar(change: impl Fn(usize, &mut f64, &mut f64)) -> String {
 
 /// The residual is the same with the other drive reversed, but friction would then drive the joints.
 #[test]
-fn the_reversed_drive_of_two_is_named() {
+fn the_reversed_drive_of_two_is_detected() {
     for (drive, name) in ["left", "right"].into_iter().enumerate() {
         let reasons = reasons_of_five_bar(|place, _, torque| {
             if place == drive {
@@ -175,7 +175,7 @@ fn the_reversed_drive_of_two_is_named() {
 }
 
 #[test]
-fn a_factor_between_two_drives_names_both() {
+fn a_factor_between_two_drives_is_reported_for_both() {
     let reasons = reasons_of_five_bar(|place, _, torque| {
         if place == 0 {
             *torque *= 1e-3;
@@ -192,7 +192,7 @@ fn a_factor_between_two_drives_names_both() {
 }
 
 #[test]
-fn one_drive_in_turns_is_named() {
+fn positions_of_one_drive_in_turns_are_detected() {
     let reasons = reasons_of_five_bar(|place, position, _| {
         if place == 0 {
             *position /= std::f64::consts::TAU;

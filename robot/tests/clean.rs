@@ -8,7 +8,7 @@ use std::{fs, path::Path};
 
 /// Robots of the default tier, identified in far less than a second: with and without redundancy
 /// and gravity.
-const CHEAP: [&str; 3] = ["emps", "five_bar", "two_motor_axis"];
+const DEFAULT_TIER_ROBOTS: [&str; 3] = ["emps", "five_bar", "two_motor_axis"];
 
 /// Robots of the full tier for which checks still fail.
 ///
@@ -16,7 +16,7 @@ const CHEAP: [&str; 3] = ["emps", "five_bar", "two_motor_axis"];
 ///   filter of the positions and no decimation. They do not suit its virtual run.
 /// - `kuka_lwr`: its encoder biases `zz_2R`, as instrumental variables show, by about one standard
 ///   deviation, which is the limit. The last digits of a simulation therefore decide.
-const ACCUSED: [&str; 2] = ["dvrk_mtm", "kuka_lwr"];
+const WITH_WARNINGS: [&str; 2] = ["dvrk_mtm", "kuka_lwr"];
 
 /// Robots of the full tier whose encoders have errors that repeat with the motion.
 ///
@@ -40,7 +40,7 @@ fn stem(path: &Path) -> &str {
 }
 
 /// Objections of the verdict to a robot's faultless experiment.
-fn accusations(path: &Path) -> Vec<String> {
+fn warnings_of(path: &Path) -> Vec<String> {
     let robot = Robot::from_toml(path).expect("a robot");
     let experiment = robot.experiment().expect("an experiment");
     let runs = experiment.runs(&robot.held_out(), &|_, _| {});
@@ -51,14 +51,14 @@ fn accusations(path: &Path) -> Vec<String> {
     };
     let failed = result.checks.iter().filter(|check| !check.passed);
     let found = failed.filter(|check| !is_expected(check));
-    let mut said: Vec<String> = found.map(Check::located).collect();
+    let mut warnings: Vec<String> = found.map(Check::located).collect();
     let grades = result.verdicts.iter().filter(|one| one.grade != Grade::Use);
-    said.extend(grades.map(|one| format!("{}: {}", one.subject, one.grade.words())));
-    said
+    warnings.extend(grades.map(|one| format!("{}: {}", one.subject, one.grade.words())));
+    warnings
 }
 
 #[test]
-fn faultless_experiments_may_be_used_without_a_remark() {
+fn faultless_experiments_raise_no_warning() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots");
     let files = fs::read_dir(folder).expect("the library");
     let files = files.map(|entry| entry.expect("an entry").path());
@@ -67,16 +67,18 @@ fn faultless_experiments_may_be_used_without_a_remark() {
         .collect();
     files.sort();
     assert!(files.len() >= 20);
-    files.retain(|path| !ACCUSED.contains(&stem(path)));
+    files.retain(|path| !WITH_WARNINGS.contains(&stem(path)));
     // Some robots in the full tier, all at night.
-    let cheap = files.iter().filter(|path| CHEAP.contains(&stem(path)));
+    let cheap = files
+        .iter()
+        .filter(|path| DEFAULT_TIER_ROBOTS.contains(&stem(path)));
     let cheap: Vec<_> = cheap.cloned().collect();
     let files = if is_full() { of_many(files) } else { cheap };
     let alarmed: Vec<String> = files
         .iter()
         .flat_map(|path| {
-            let said = accusations(path).into_iter();
-            said.map(|said| format!("{}: {said}", stem(path)))
+            let warnings = warnings_of(path).into_iter();
+            warnings.map(|warnings| format!("{}: {warnings}", stem(path)))
         })
         .collect();
     assert!(alarmed.is_empty(), "{}", alarmed.join("\n"));

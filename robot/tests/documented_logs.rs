@@ -95,7 +95,7 @@ fn read(example: &Example, path: &str) -> Log {
 }
 
 #[test]
-fn shown_texts_are_read_with_the_tables_below_them() {
+fn documented_texts_are_read_with_their_tables() {
     let page = page();
     let examples = examples(&page);
     let shown: Vec<&Example> = examples
@@ -131,7 +131,7 @@ fn shown_texts_are_read_with_the_tables_below_them() {
 }
 
 #[test]
-fn files_of_other_programs_are_read_with_the_tables_of_the_page() {
+fn files_of_other_programs_are_read_with_the_documented_tables() {
     let page = page();
     let mut names = Vec::new();
     for example in examples(&page) {
@@ -159,7 +159,7 @@ fn files_of_other_programs_are_read_with_the_tables_of_the_page() {
 }
 
 #[test]
-fn refused_formats_are_named_as_documented() {
+fn unsupported_formats_are_reported_as_documented() {
     let files: [(&str, &[u8]); 10] = [
         ("bag of ROS 1", b"#ROSBAG V2.0\n"),
         ("bag of ROS 2 in SQLite", b"SQLite format 3\0\0\0"),

@@ -16,9 +16,9 @@ const MEAN: f64 = 21.2;
 /// The published mean of physically consistent parameters.
 const CONSISTENT_MEAN: f64 = 21.0;
 /// The smaller of both for each joint.
-const BETTER: [f64; 7] = [7.7, 14.9, 17.0, 20.9, 26.3, 23.4, 34.0];
+const BEST_PUBLISHED: [f64; 7] = [7.7, 14.9, 17.0, 20.9, 26.3, 23.4, 34.0];
 /// Tolerance factor on the smaller one: joint 5 is a tenth of a percent above.
-const ABOVE: f64 = 1.01;
+const TOLERANCE_FACTOR: f64 = 1.01;
 /// Number of base parameters, with the spring and the rotor of motor 4.
 const BASE: usize = 73;
 
@@ -82,9 +82,12 @@ fn the_test_run_is_predicted_as_published() {
     // Physically consistent parameters predict at least as well.
     let consistent = errors(Stage::Consistent);
     assert!(mean(&consistent) <= CONSISTENT_MEAN, "{consistent:?}");
-    let both = own.iter().zip(&consistent).zip(BETTER);
+    let both = own.iter().zip(&consistent).zip(BEST_PUBLISHED);
     for ((own, consistent), published) in both {
-        assert!(own.min(*consistent) < ABOVE * published, "{published}");
+        assert!(
+            own.min(*consistent) < TOLERANCE_FACTOR * published,
+            "{published}"
+        );
     }
     println!(
         "{own:.1?} {:.2}, {consistent:.1?} {:.2}",

@@ -20,7 +20,7 @@ fn file() -> Option<PathBuf> {
 }
 
 #[test]
-fn the_closed_loop_gives_instruments_that_agree_with_least_squares() {
+fn simulated_instruments_agree_with_least_squares() {
     let Some(file) = file() else {
         return;
     };

@@ -150,7 +150,7 @@ fn a_five_bar_is_excited_within_its_limits() {
     }
     assert!(found.found.limits_used.iter().all(|used| *used <= 1.0));
     // The runs read back are those that were judged.
-    let judged = again
+    let evaluated = again
         .excite(
             &ExcitationEffort {
                 generations: 0,
@@ -159,7 +159,7 @@ fn a_five_bar_is_excited_within_its_limits() {
             &|_, _| (),
         )
         .expect("runs");
-    let own = &judged.described.expect("the computed runs").cases[0];
+    let own = &evaluated.described.expect("the computed runs").cases[0];
     assert!(
         (own.condition / best.condition - 1.0).abs() < 1e-6,
         "{own:?} {best:?}"
@@ -167,7 +167,7 @@ fn a_five_bar_is_excited_within_its_limits() {
 }
 
 #[test]
-fn limits_of_the_table_are_kept_and_runs_that_are_held_out_stay() {
+fn excitation_keeps_its_limits_and_the_validation_runs() {
     let robot = library("emps");
     let table = "\n[excitation]\nfundamental = \"0.5 Hz\"\nharmonics = 4\nruns = 2\nposition = \"50 mm\"\nvelocity = \"0.2 m/s\"\nacceleration = \"1 m/s^2\"\n";
     let text = format!("{}{table}", robot.source().text).replace(
@@ -197,7 +197,7 @@ fn limits_of_the_table_are_kept_and_runs_that_are_held_out_stay() {
 
 /// Also for chains, whose motors may reach a singularity like those of a platform.
 #[test]
-fn limits_that_no_motion_keeps_are_told_at_their_line() {
+fn unsatisfiable_limits_are_reported_at_their_line() {
     for name in ["five_bar", "ankle"] {
         let robot = library(name);
         let text = format!("{}\n[excitation]\ncondition = 1\n", robot.source().text);
@@ -220,7 +220,7 @@ fn limits_that_no_motion_keeps_are_told_at_their_line() {
 }
 
 #[test]
-fn a_time_that_is_up_ends_the_random_series_too() {
+fn the_time_limit_ends_the_random_search() {
     let robot = library("planar_3prr");
     let table = "\n[excitation]\nharmonics = 30\nruns = 1\n";
     let text = format!("{}{table}", robot.source().text);
@@ -238,7 +238,7 @@ fn a_time_that_is_up_ends_the_random_series_too() {
 }
 
 #[test]
-fn speeds_that_nothing_limits_are_told() {
+fn missing_speed_limits_are_reported() {
     let robot = library("five_bar");
     let (text, _) = robot
         .source()
@@ -278,7 +278,7 @@ fn small_robots_are_excited_within_their_reach() {
 }
 
 #[test]
-fn robots_that_cannot_move_are_refused() {
+fn excitation_of_immovable_robots_is_rejected() {
     let robot = yoke_with_cranks_of("1e-7 m");
     let error = robot.excite(&EFFORT, &|_, _| ()).expect_err("no motion");
     let problems = error.problems();

@@ -67,7 +67,7 @@ fn found(result: &Identification, kind: CheckKind) -> Vec<String> {
 }
 
 #[test]
-fn a_delta_whose_signals_passed_one_low_pass_is_not_trusted() {
+fn low_pass_filtered_delta_signals_are_not_trusted() {
     let lagged = identified(DELTA, |positions, torques, n| {
         // 5 ms at 1 kHz.
         let part = 1.0 - (-0.2_f64).exp();
@@ -79,7 +79,7 @@ fn a_delta_whose_signals_passed_one_low_pass_is_not_trusted() {
 }
 
 #[test]
-fn what_a_harmful_fault_leaves_far_beyond_the_noise_is_not_trusted_in_part() {
+fn residuals_far_above_noise_after_a_fault_are_unusable() {
     // Torques of one run of an ankle through a low-pass filter of 10 ms at 1 kHz; only the smoothed
     // friction is visible.
     let result = identified_from(1, ANKLE, |_, torques, n| {
@@ -91,7 +91,7 @@ fn what_a_harmful_fault_leaves_far_beyond_the_noise_is_not_trusted_in_part() {
 }
 
 #[test]
-fn a_filter_of_all_signals_is_told_by_masses_that_change_with_the_pose() {
+fn a_filter_of_all_signals_is_detected_by_varying_masses() {
     let smooth: Vec<String> = DELTA
         .lines()
         .map(|line| {
@@ -116,7 +116,7 @@ fn a_filter_of_all_signals_is_told_by_masses_that_change_with_the_pose() {
 }
 
 #[test]
-fn coarse_encoders_are_no_filter_of_the_torques() {
+fn coarse_encoders_are_not_reported_as_torque_filters() {
     let coarse = with(FIVE_BAR, "encoder = \"1e-5 rad\"", "encoder = \"1e-4 rad\"");
     let result = identified(&coarse, |_, _, _| ());
     assert_eq!(found(&result, CheckKind::Filters), Vec::<String>::new());
@@ -129,7 +129,7 @@ fn coarse_encoders_are_no_filter_of_the_torques() {
 }
 
 #[test]
-fn a_loop_that_shakes_for_a_delay_of_its_drives_accuses_no_length() {
+fn oscillation_from_drive_delay_is_not_reported_as_closure_error() {
     let short = with(DUALV, "duration = \"10 s\"", "duration = \"3 s\"");
     let shaking = with(
         &short,
@@ -147,7 +147,7 @@ fn a_loop_that_shakes_for_a_delay_of_its_drives_accuses_no_length() {
 
 /// At the edge of the workspace, where swapped positions are reachable but smoother ones are not.
 #[test]
-fn swapped_positions_are_told_and_not_refused() {
+fn swapped_positions_are_reported_instead_of_rejected() {
     let short = with(FIVE_BAR, "duration = \"10 s\"", "duration = \"2.5 s\"");
     let result = identified(&short, |positions, _, n| {
         positions.chunks_exact_mut(n).for_each(|row| row.swap(0, 1));
@@ -157,7 +157,7 @@ fn swapped_positions_are_told_and_not_refused() {
 }
 
 #[test]
-fn a_decimation_too_small_for_the_sampling_frequency_is_told_with_a_larger_one() {
+fn too_small_decimations_are_reported_with_a_larger_one() {
     // At 2 kHz and with a decimation by 2, torques keep 500 Hz; positions are filtered at 100 Hz.
     let text = with(FIVE_BAR, "decimation = 12", "decimation = 2");
     let text = with(&text, "duration = \"10 s\"", "duration = \"4 s\"");

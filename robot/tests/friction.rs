@@ -138,7 +138,7 @@ fn friction_of_every_kind_is_identified_under_default_settings() {
 /// A motor that drives both joints and one that drives the first: joint-side estimates are reported
 /// on the motor side.
 #[test]
-fn parameters_of_motors_are_told_in_front_of_their_gears() {
+fn motor_parameters_are_reported_on_the_motor_side() {
     let motors = "[[leg.arm.motor]]\nname = \"first\"\nturns = \"q1\"\nratio = -20\n\
                   [[leg.arm.motor]]\nname = \"both\"\nturns = \"q1 + 2*q2\"\nratio = 50\n\
                   parameters = [\"ia\", \"friction by direction\", \"fq\"]\nstribeck = \"1 rad/s\"\n\n[[place]]";

@@ -33,10 +33,10 @@ fn coarse(identification: &str) -> String {
     coarse
 }
 
-const KNOWN: &str = "gains = true\nknown = { m_payload = \"5.42 kg\" }";
+const KNOWN_PAYLOAD: &str = "gains = true\nknown = { m_payload = \"5.42 kg\" }";
 
 /// True gains of the DualV's drives.
-const WRONG: [f64; 4] = [1.12, 0.83, 1.33, 0.72];
+const TRUE_GAINS: [f64; 4] = [1.12, 0.83, 1.33, 0.72];
 
 /// Gaussian noise.
 struct Noise(u64);
@@ -127,19 +127,19 @@ fn check_joint(result: &Identification) {
 }
 
 #[test]
-fn a_dualv_tells_its_gains_and_masses_by_a_payload_that_was_weighed() {
-    let robot = robot(&by_tier([coarse(KNOWN), dualv(KNOWN)]));
+fn a_weighed_payload_determines_gains_and_masses_of_a_dualv() {
+    let robot = robot(&by_tier([coarse(KNOWN_PAYLOAD), dualv(KNOWN_PAYLOAD)]));
     let exact = exact(&robot, by_tier([1.0, 4.0]));
     let truth = exact.true_values.clone().expect("true values");
     for seed in 1..=by_tier([1, 3]) {
         let runs = Runs {
-            identified: logged(&exact.identified, &WRONG, &[0.5; 4], seed),
-            validation: logged(&exact.validation, &WRONG, &[0.5; 4], seed + 100),
+            identified: logged(&exact.identified, &TRUE_GAINS, &[0.5; 4], seed),
+            validation: logged(&exact.validation, &TRUE_GAINS, &[0.5; 4], seed + 100),
             true_values: exact.true_values.clone(),
         };
         let result = Identifier::new(&robot).data(&runs).run();
         let result = result.expect("an identification");
-        for (own, truth) in result.gains.iter().zip(WRONG) {
+        for (own, truth) in result.gains.iter().zip(TRUE_GAINS) {
             let miss = (own.factor - truth) / own.deviation;
             println!(
                 "{}: {} ± {}, {truth}, by TLS {:?}",
@@ -178,8 +178,8 @@ fn a_dualv_tells_its_gains_and_masses_by_a_payload_that_was_weighed() {
 /// Errors have zero mean and the stated standard deviations if the drives' noise differs and is
 /// large.
 #[test]
-fn deviations_of_gains_are_honest() {
-    let robot = robot(&coarse(KNOWN));
+fn standard_deviations_of_gains_match_their_errors() {
+    let robot = robot(&coarse(KNOWN_PAYLOAD));
     let exact = exact(&robot, by_tier([1.0, 4.0]));
     let settings = robot.settings(1000.0);
     let draws = drawn([4, 100, 100]);
@@ -187,12 +187,12 @@ fn deviations_of_gains_are_honest() {
     let (mut squares, mut sums) = ([0.0; 4], [0.0; 4]);
     let mut plain = [0.0; 4];
     for draw in 0..draws {
-        let runs = logged(&exact.identified, &WRONG, &noise, 1 + draw);
+        let runs = logged(&exact.identified, &TRUE_GAINS, &noise, 1 + draw);
         let found = found(&robot, &runs, &settings);
-        for (j, miss) in misses(&found, &WRONG).into_iter().enumerate() {
+        for (j, miss) in misses(&found, &TRUE_GAINS).into_iter().enumerate() {
             squares[j] += miss * miss;
             sums[j] += miss;
-            plain[j] += found.drives[j].total_least_squares.unwrap_or(f64::NAN) / WRONG[j];
+            plain[j] += found.drives[j].total_least_squares.unwrap_or(f64::NAN) / TRUE_GAINS[j];
         }
     }
     let count = draws as f64;
@@ -236,7 +236,7 @@ fn rx90(known: &str) -> String {
 }
 
 #[test]
-fn a_serial_robot_tells_its_gains_by_a_payload_on_its_last_body() {
+fn a_known_payload_determines_gains_of_a_serial_robot() {
     let wrong = [0.88, 1.2, 0.75, 1.33, 1.15, 0.8];
     let robot = robot(&rx90(
         "known = { m_payload = 5, mx_payload = 0.25, my_payload = -0.1, mz_payload = 0.9 }",
@@ -265,7 +265,7 @@ fn a_serial_robot_tells_its_gains_by_a_payload_on_its_last_body() {
 ///
 /// In the default tier, the runs are too short to determine all gains, and those are reported.
 #[test]
-fn a_serial_robot_tells_its_gains_by_the_mass_of_a_payload_alone() {
+fn a_payload_mass_alone_determines_gains_of_a_serial_robot() {
     let wrong = [0.88, 1.2, 0.75, 1.33, 1.15, 0.8];
     let robot = robot(&rx90("known = { m_payload = 5 }"));
     let exact = exact(&robot, by_tier([2.5, 20.0]));
@@ -296,15 +296,15 @@ fn a_serial_robot_tells_its_gains_by_the_mass_of_a_payload_alone() {
 /// Intervals of parameters estimated after gains contain the truth, because they include the gains'
 /// uncertainty.
 #[test]
-fn intervals_behind_gains_contain_the_truth() {
-    let robot = robot(&coarse(KNOWN));
+fn intervals_include_the_uncertainty_of_gains() {
+    let robot = robot(&coarse(KNOWN_PAYLOAD));
     let exact = exact(&robot, by_tier([1.0, 4.0]));
     let draws = drawn([1, 10, 20]);
     // Consider parameters that are well known compared to the gains, for which the gains matter.
     let (mut all, mut within, mut narrow) = (0, 0, 0);
     for seed in 1..=draws {
         let runs = Runs {
-            identified: logged(&exact.identified, &WRONG, &[0.5; 4], seed),
+            identified: logged(&exact.identified, &TRUE_GAINS, &[0.5; 4], seed),
             true_values: exact.true_values.clone(),
             ..Runs::default()
         };
@@ -338,7 +338,7 @@ const ARM_NOISE: f64 = 0.015;
 
 /// An unknown payload on a serial robot with measured noise levels.
 #[test]
-fn an_unknown_payload_of_a_serial_robot_is_found() {
+fn an_unknown_payload_of_a_serial_robot_is_identified() {
     // Only a base parameter is tested, so nothing is eliminated.
     let text = rx90("").replacen("gains = true\n", "essential = false\n", 1);
     assert!(text.contains("essential = false"));
@@ -379,12 +379,12 @@ fn an_unknown_payload_of_a_serial_robot_is_found() {
 }
 
 #[test]
-fn gains_that_nothing_fixes_are_refused_and_why() {
-    let nothing = robot(&coarse(""));
-    let runs = exact(&nothing, 0.5).identified;
-    let output = refused(&nothing, &runs);
+fn undetermined_gains_are_rejected_with_the_reason() {
+    let undetermined = robot(&coarse(""));
+    let runs = exact(&undetermined, 0.5).identified;
+    let output = refused(&undetermined, &runs);
     assert!(output.contains("without a known parameter"), "{output}");
-    let payload = robot(&coarse(KNOWN));
+    let payload = robot(&coarse(KNOWN_PAYLOAD));
     let (loaded, unloaded): (Vec<Log>, Vec<Log>) = runs.iter().cloned().partition(Log::payload);
     let output = refused(&payload, &unloaded);
     assert!(
@@ -412,7 +412,7 @@ fn gains_that_nothing_fixes_are_refused_and_why() {
 }
 
 #[test]
-fn robots_whose_motors_turn_several_joints_have_no_gains_of_joints() {
+fn gains_of_coupled_motors_are_not_identified() {
     let coupled = robot(&text("tx40.toml"));
     let output = refused(&coupled, &[]);
     assert!(

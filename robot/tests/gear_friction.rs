@@ -117,7 +117,7 @@ fn covered(drives: &[DriveGearFriction], gears: &[GearFriction]) -> (usize, usiz
 }
 
 #[test]
-fn coefficients_lie_in_their_intervals() {
+fn intervals_of_gear_friction_cover_the_truth() {
     let (mut inside, mut all) = (0, 0);
     for seed in 1..=drawn([2, 10, 50]) {
         let robot = arm(seed);
@@ -136,7 +136,7 @@ fn coefficients_lie_in_their_intervals() {
 }
 
 #[test]
-fn parameters_are_right_only_without_the_losses() {
+fn parameters_are_right_only_if_gear_losses_are_modelled() {
     let robot = arm(1);
     let logs = logs(&robot, &GEARS);
     let lossless = identified(&robot, &logs);
@@ -157,7 +157,7 @@ fn parameters_are_right_only_without_the_losses() {
 
 /// Each drive of a redundant robot has its own measured torque.
 #[test]
-fn gears_of_a_redundant_robot() {
+fn gear_friction_of_a_redundant_robot_is_identified() {
     if !is_full() {
         return;
     }

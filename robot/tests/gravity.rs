@@ -6,7 +6,7 @@ use overact_tier::by_tier;
 use std::path::Path;
 
 /// Gravity rotated by 2° about y, then by 2° about x, m/s².
-fn turned() -> [f64; 3] {
+fn tilted_gravity() -> [f64; 3] {
     let (sine, cosine) = 2.0_f64.to_radians().sin_cos();
     let [x, z] = [-9.81 * sine, -9.81 * cosine];
     [x, -z * sine, z * cosine]
@@ -26,7 +26,7 @@ fn replaced(text: &str, from: &str, to: &str) -> String {
     text.replace(from, to)
 }
 
-const DOWN: &str = "gravity = [0, 0, \"-9.81 m/s^2\"]";
+const GRAVITY_LINE: &str = "gravity = [0, 0, \"-9.81 m/s^2\"]";
 
 /// Runs of a library robot with some gravity and duration (s), and the robot as described.
 fn runs(name: &str, gravity: [f64; 3], duration: f64) -> (Robot, Runs) {
@@ -34,7 +34,7 @@ fn runs(name: &str, gravity: [f64; 3], duration: f64) -> (Robot, Runs) {
     let identification = "[identification]\n";
     let base_only = format!("{identification}essential = false\n");
     let described = replaced(&text(name), identification, &base_only);
-    let own = replaced(&described, DOWN, &format!("gravity = {gravity:?}"));
+    let own = replaced(&described, GRAVITY_LINE, &format!("gravity = {gravity:?}"));
     let moved = robot(&own);
     let mut experiment = moved.experiment().expect("an experiment");
     experiment.plan_mut().duration_s = duration;
@@ -91,10 +91,10 @@ fn check(result: &Identification, gravity: [f64; 3]) {
 }
 
 #[test]
-fn a_serial_robot_that_stands_off_the_vertical_tells_it() {
-    let (robot, runs) = runs("rx90.toml", turned(), by_tier([5.0, 20.0]));
+fn the_tilt_of_a_serial_robot_is_identified() {
+    let (robot, runs) = runs("rx90.toml", tilted_gravity(), by_tier([5.0, 20.0]));
     let result = identified(&robot, &runs, true);
-    check(&result, turned());
+    check(&result, tilted_gravity());
     // Parameters that rotate with the first joint have an effect only with tilted gravity.
     let has = |name: &str| {
         let mut all = result.base_parameters.iter();
@@ -118,7 +118,7 @@ fn a_serial_robot_that_stands_off_the_vertical_tells_it() {
 ///
 /// The direction would be biased by several standard deviations, so it is not identified.
 #[test]
-fn robots_with_loops_are_refused() {
+fn gravity_direction_of_closed_loop_robots_is_rejected() {
     for name in ["delta.toml", "planar_4prr.toml", "palletiser.toml"] {
         let robot = robot(&text(name));
         let mut runs = robot.experiment().expect("an experiment");
@@ -134,7 +134,7 @@ fn robots_with_loops_are_refused() {
 }
 
 #[test]
-fn a_robot_that_stands_upright_is_identified_as_it_is_described() {
+fn an_upright_robot_keeps_its_described_gravity() {
     let (robot, runs) = runs("rx90.toml", [0.0, 0.0, -9.81], 5.0);
     let result = identified(&robot, &runs, true);
     let found = result.gravity.as_ref().expect("a direction");
@@ -163,7 +163,7 @@ fn a_robot_that_stands_upright_is_identified_as_it_is_described() {
 }
 
 #[test]
-fn a_direction_that_nothing_tells_is_refused() {
+fn a_gravity_direction_without_information_is_rejected() {
     let robot = robot(&text("emps.toml"));
     let mut experiment = robot.experiment().expect("an experiment");
     experiment.plan_mut().duration_s = 5.0;
@@ -183,7 +183,7 @@ fn a_direction_that_nothing_tells_is_refused() {
 }
 
 #[test]
-fn wrong_keys_are_told_at_their_places() {
+fn invalid_gravity_keys_are_located() {
     let emps = text("emps.toml");
     let output = |key: &str, more: [&str; 2]| {
         let own = replaced(
@@ -206,7 +206,10 @@ fn wrong_keys_are_told_at_their_places() {
     assert!(error.contains("true or false"), "{error}");
     let error = output("gravity_direction = [0, 0]", none);
     assert!(error.contains("true or false"), "{error}");
-    let error = output("gravity_direction = true", [DOWN, "gravity = [0, 0, 0]"]);
+    let error = output(
+        "gravity_direction = true",
+        [GRAVITY_LINE, "gravity = [0, 0, 0]"],
+    );
     assert!(error.contains("gravity is zero"), "{error}");
     let both = "gravity_direction = true\ngains = true\nknown = { m_1 = 100 }";
     let error = output(both, none);

@@ -105,7 +105,7 @@ fn base(found: &Identification) -> &Estimate {
 }
 
 #[test]
-fn the_other_parameters_are_identified_and_the_held_ones_kept() {
+fn held_parameters_are_kept_and_the_others_identified() {
     let found = identified(&(ARM.to_owned() + ELBOW));
     let truth: BTreeMap<&str, f64> = [
         // Only sums with the rotor act, and the elbow is known.
@@ -176,7 +176,7 @@ fn residuals_refer_to_the_measured_torques() {
 }
 
 #[test]
-fn a_wrong_held_value_shows_in_the_residual() {
+fn a_wrong_held_value_increases_the_residual() {
     let wrong = (ARM.to_owned() + ELBOW).replace("mx_elbow = 0.6\nmy", "mx_elbow = 1.2\nmy");
     let (right, wrong) = (identified(&(ARM.to_owned() + ELBOW)), identified(&wrong));
     let [right, wrong] = [right, wrong].map(|one| base(&one).relative_error_percent);
@@ -184,7 +184,7 @@ fn a_wrong_held_value_shows_in_the_residual() {
 }
 
 #[test]
-fn impossible_lists_are_refused() {
+fn invalid_lists_of_held_parameters_are_rejected() {
     let refused = |held: &str, values: &str, words: &str| {
         let text = format!("{ARM}\n[prior]\nheld = {held}\n[prior.values]\n{values}\n");
         let error = Robot::from_text("arm.toml", &text).err();

@@ -38,7 +38,7 @@ fn imported(text: &str) -> Result<String, Error> {
 }
 
 #[test]
-fn a_driven_follower_leads_the_joint_that_it_follows() {
+fn a_driven_coupled_joint_becomes_the_leader() {
     let text = imported(&gripper("leader")).expect("a description");
     assert!(text.contains("q_leader"), "{text}");
     let text = imported(&gripper("follower")).expect("a description");
@@ -47,7 +47,7 @@ fn a_driven_follower_leads_the_joint_that_it_follows() {
 }
 
 #[test]
-fn home_is_moved_out_of_a_dead_centre() {
+fn the_home_pose_is_moved_off_a_dead_centre() {
     let text = imported(DEAD_CENTRE).expect("a description");
     assert!(text.contains("# Home is moved"), "{text}");
 }

@@ -43,7 +43,7 @@ fn evaluate(
 /// B_p of the DualV is diagonal, -d2 d3 sin(q2) of each leg; also if only the model's functions are
 /// compiled.
 #[test]
-fn the_closure_is_served_from_joints() {
+fn the_closure_jacobian_is_evaluated_from_joints() {
     let loaded =
         Robot::from_toml(description("dualv.toml")).map_err(|failure| failure.render(false));
     let lean = loaded.expect("a robot");
@@ -103,7 +103,7 @@ fn rates_are_derivatives_of_positions() {
 }
 
 #[test]
-fn forward_kinematics_finds_the_pose_back() {
+fn forward_kinematics_recovers_the_pose() {
     let robot = &*DUALV;
     let actuators = evaluate(robot, Function::ActuatorPositions, &[&POSE], 4);
     let mut pose = robot.info().home_pose.to_vec();
@@ -127,7 +127,7 @@ fn forward_kinematics_finds_the_pose_back() {
 }
 
 #[test]
-fn columns_times_parameters_are_the_torques() {
+fn regressor_times_parameters_equals_the_torques() {
     let robot = &*DUALV;
     let info = robot.info();
     let (own, payload) = (info.sizes.parameters, info.sizes.payload_parameters);
@@ -171,7 +171,7 @@ fn columns_times_parameters_are_the_torques() {
 }
 
 #[test]
-fn bad_samples_are_named() {
+fn failing_samples_are_reported_by_index() {
     let robot = &*DUALV;
     let mut output = vec![0.0; 24];
     let mut poses = [POSE, POSE].concat();
@@ -198,7 +198,7 @@ fn bad_samples_are_named() {
 }
 
 #[test]
-fn what_a_robot_says_of_itself() {
+fn robot_info_describes_the_dualv() {
     let robot = &*DUALV;
     let info = robot.info();
     assert_eq!(
@@ -235,7 +235,7 @@ fn what_a_robot_says_of_itself() {
 }
 
 #[test]
-fn a_tree_is_its_joints() {
+fn serial_robots_have_joints_as_pose() {
     let robot = &robot("emps.toml");
     let mut pose = [0.0];
     robot

@@ -196,7 +196,7 @@ fn the_counterbalance_as_a_spring_explains_the_second_joint() {
 }
 
 #[test]
-fn the_free_fit_of_ten_seconds_is_refused() {
+fn a_free_fit_of_ten_seconds_is_unusable() {
     let Some(log) = measured() else { return };
     let found = identified(&(arm() + COUNTERBALANCE), &log);
     let lines = base(&found).lines.iter();

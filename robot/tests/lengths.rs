@@ -16,7 +16,7 @@ fn identified(upper_arm: &str) -> Identification {
 }
 
 #[test]
-fn a_wrong_length_of_a_serial_robot_is_named_with_its_size() {
+fn a_wrong_length_of_a_serial_robot_is_detected_with_its_size() {
     let result = identified("upper_arm = \"0.31 m\"");
     for check in &result.checks {
         println!("{:?} {}", check.kind, check.words);
@@ -32,10 +32,12 @@ fn a_wrong_length_of_a_serial_robot_is_named_with_its_size() {
 }
 
 #[test]
-fn the_right_length_passes() {
+fn a_correct_length_passes() {
     let result = identified("upper_arm = \"0.30 m\"");
-    let mut said = result.checks.iter().map(|check| check.words.as_str());
-    assert!(said.any(|words| words.contains("no wrong length") && words.contains("`d_2_arm`")));
+    let mut check_words = result.checks.iter().map(|check| check.words.as_str());
+    assert!(
+        check_words.any(|words| words.contains("no wrong length") && words.contains("`d_2_arm`"))
+    );
     assert!(
         result
             .checks

@@ -24,7 +24,7 @@ fn messages(error: &Error) -> Vec<String> {
 }
 
 #[test]
-fn a_description_that_asks_for_base_parameters_gets_no_others() {
+fn disabled_elimination_gives_base_parameters_only() {
     let robot = emps();
     let experiment = robot.experiment().expect("an experiment");
     let runs = experiment.runs(&["validation".to_owned()], &|_, _| {});
@@ -61,7 +61,7 @@ fn a_description_that_asks_for_base_parameters_gets_no_others() {
 }
 
 #[test]
-fn the_seed_is_the_plans() {
+fn the_noise_follows_the_seed_of_the_plan() {
     let robot = emps();
     let positions = |seed| {
         let mut experiment = robot.experiment().expect("an experiment");
@@ -75,7 +75,7 @@ fn the_seed_is_the_plans() {
 }
 
 #[test]
-fn all_that_is_wrong_comes_at_once() {
+fn all_errors_are_reported_together() {
     let text = "name = \"A\"\nnonsense = 1\n[[joint]]\nkind = \"sliding\"\n";
     let error = Robot::from_text("a.toml", text).expect_err("two errors");
     assert!(error.problems().len() > 1, "{error}");

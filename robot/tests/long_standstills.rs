@@ -42,7 +42,7 @@ fn identified(robot: &Robot, runs: &[Log], validation: &[Log]) -> Identification
 }
 
 #[test]
-fn long_standstills_of_training_and_validation_runs_are_left_out() {
+fn long_standstills_are_left_out_of_all_runs() {
     let (robot, runs) = arm();
     let clean = identified(&robot, &runs.identified, &runs.validation);
     let rested =

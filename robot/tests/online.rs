@@ -112,7 +112,7 @@ fn emps_ends_with_the_batch_estimate() {
 }
 
 #[test]
-fn dualv_ends_with_the_batch_estimate_and_learns_its_payload_last() {
+fn dualv_ends_with_the_batch_estimate_and_its_payload() {
     let robot = library("dualv");
     let mut experiment = robot.experiment().expect("an experiment");
     experiment.plan_mut().duration_s = 3.0;
@@ -168,7 +168,7 @@ fn ur10e(factors: &[f64], identification: &str) -> Robot {
 
 /// Full tier only: it identifies gains and parameters of two pairs of logs.
 #[test]
-fn payload_of_the_ur10e_is_known_soon_after_it_is_picked_up() {
+fn payload_of_the_ur10e_is_known_soon_after_pick_up() {
     const MASS: f64 = 2.805;
     let names = [
         "15harm_unloaded",

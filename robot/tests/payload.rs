@@ -47,7 +47,7 @@ fn rx90(seed: u64) -> String {
 }
 
 #[test]
-fn the_mass_of_a_payload_on_a_serial_robot_is_found_within_two_percent() {
+fn payload_mass_of_a_serial_robot_is_identified_within_2_percent() {
     for seed in 1..=by_tier([1, 5]) {
         let robot = Robot::from_text("rx90.toml", &rx90(seed)).expect("a robot");
         let experiment = robot.experiment().expect("an experiment");

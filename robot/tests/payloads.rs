@@ -104,7 +104,7 @@ fn check(result: &Identification, endings: [&str; 2]) {
 }
 
 #[test]
-fn two_payloads_of_a_serial_robot_are_told_from_each_other() {
+fn two_payloads_of_a_serial_robot_are_distinguished() {
     let robot = robot(&rx90(true));
     let runs = runs(&robot, &[String::from("validation")]);
     let names: Vec<Option<&str>> = runs
@@ -135,7 +135,7 @@ fn two_payloads_of_a_serial_robot_are_told_from_each_other() {
 }
 
 #[test]
-fn without_an_unloaded_run_one_payload_is_told_beside_the_other() {
+fn without_an_unloaded_run_payload_differences_are_identified() {
     let robot = robot(&rx90(false));
     let runs = runs(&robot, &[String::from("validation")]);
     let result = identified(&robot, &runs);
@@ -185,7 +185,7 @@ fn dualv(more: &str) -> String {
 }
 
 #[test]
-fn two_known_masses_of_a_parallel_robot_fix_its_gains() {
+fn two_known_payload_masses_determine_gains_of_a_parallel_robot() {
     let gains = [1.12, 0.83, 1.33, 0.72];
     let known =
         "gains = true\nknown = { m_payload_heavy = \"5.42 kg\", m_payload_light = \"2 kg\" }";
@@ -211,7 +211,7 @@ fn two_known_masses_of_a_parallel_robot_fix_its_gains() {
 }
 
 #[test]
-fn runs_with_and_without_names_are_not_mixed() {
+fn named_and_unnamed_payload_runs_are_not_mixed() {
     let robot = robot(&dualv(""));
     let mut runs = runs(&robot, &robot.held_out());
     let log = &runs.identified[3];
@@ -230,7 +230,7 @@ fn runs_with_and_without_names_are_not_mixed() {
 }
 
 #[test]
-fn wrong_names_are_told_at_their_places() {
+fn invalid_payload_names_are_located() {
     let output = |pairs: &[(&str, &str)], place: &str| {
         let own = replaced(&dualv(""), pairs);
         let error = Robot::from_text("robot.toml", &own).expect_err("a wrong name");

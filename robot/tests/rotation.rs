@@ -87,7 +87,7 @@ fn inertia(result: &Identification) -> f64 {
 }
 
 #[test]
-fn angles_of_many_turns_and_wrapped_ones_give_the_same_parameters() {
+fn continuous_and_wrapped_angles_give_the_same_parameters() {
     let rounded = |angle: f64| (angle * 1e5).round() / 1e5;
     let plain = robot("");
     let counted = identified(&plain, log(&plain, rounded).expect("a log"));
@@ -122,7 +122,7 @@ fn angles_of_many_turns_and_wrapped_ones_give_the_same_parameters() {
 }
 
 #[test]
-fn degrees_that_are_read_as_radians_are_not_taken_for_a_rotation() {
+fn degrees_read_as_radians_are_not_unwrapped() {
     let plain = robot("");
     let log = log(&plain, f64::to_degrees).expect("a log");
     let result = identified(&plain, log);
@@ -135,7 +135,7 @@ fn degrees_that_are_read_as_radians_are_not_taken_for_a_rotation() {
 }
 
 #[test]
-fn a_slide_that_jumps_by_the_length_of_a_turn_is_not_unwrapped() {
+fn prismatic_positions_are_not_unwrapped() {
     let slide = ARM.replace("type = \"revolute\"", "type = \"prismatic\"");
     let slide = Robot::from_text("slide.toml", &slide).expect("a robot");
     let log = log(&slide, |angle| angle.rem_euclid(TAU)).expect("a log");
@@ -143,7 +143,7 @@ fn a_slide_that_jumps_by_the_length_of_a_turn_is_not_unwrapped() {
 }
 
 #[test]
-fn half_a_turn_between_two_samples_is_refused() {
+fn half_a_turn_between_two_samples_is_rejected() {
     let plain = robot("");
     // A hundred times as fast: nearly half a turn between some samples.
     let fast = |angle: f64| (100.0 * angle).rem_euclid(TAU);

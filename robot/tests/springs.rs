@@ -59,7 +59,7 @@ fn errors(result: &Identification) -> (f64, Vec<f64>) {
 }
 
 #[test]
-fn springs_of_passive_joints_are_identified_next_to_known_torques() {
+fn springs_of_passive_joints_are_identified_with_known_torques() {
     let robot =
         Robot::from_text("sprung.toml", &sprung()).unwrap_or_else(|error| panic!("{error}"));
     let (worst, stiffnesses) = errors(&identified(&robot, &robot));
@@ -72,7 +72,7 @@ fn springs_of_passive_joints_are_identified_next_to_known_torques() {
 
 /// Without the known torques in the description, the same runs give wrong parameters.
 #[test]
-fn known_torques_that_are_left_out_matter() {
+fn omitted_known_torques_bias_parameters() {
     let text = sprung();
     let known = |line: &&str| !line.starts_with("known");
     let without: Vec<&str> = text.lines().filter(known).collect();
@@ -116,7 +116,7 @@ fn refused(table: &str) -> String {
 }
 
 #[test]
-fn a_force_without_value_at_home_is_named() {
+fn a_spring_force_undefined_at_home_is_rejected() {
     let text = "[[spring]]\nname = \"root\"\nfrom = { body = \"ground\", at = [\"0.1 m\", \"1 m\", 0] }\nto = { body = \"left.2\", at = [\"0.1 m\", 0, 0] }\nforce = \"sqrt(l^2 - (100 m)^2)\"\n";
     let error = refused(text);
     assert!(
@@ -126,7 +126,7 @@ fn a_force_without_value_at_home_is_named() {
 }
 
 #[test]
-fn a_constant_does_not_hide_the_length_of_a_spring() {
+fn constants_may_not_shadow_the_length_of_a_spring() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/rx90.toml");
     let text = fs::read_to_string(path).expect("the arm");
     assert_eq!(text.matches("[constants]").count(), 1);

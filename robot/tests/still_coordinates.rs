@@ -33,7 +33,7 @@ fn excitation(result: &Identification) -> &Check {
 }
 
 #[test]
-fn a_coordinate_that_does_not_move_is_named_and_no_wrong_parameter_may_be_used() {
+fn unexcited_coordinates_are_reported_and_affect_no_usable_parameter() {
     for (name, still) in [
         ("five_bar.toml", "x"),
         ("five_bar.toml", "y"),
@@ -65,7 +65,7 @@ fn a_coordinate_that_does_not_move_is_named_and_no_wrong_parameter_may_be_used()
 }
 
 #[test]
-fn a_motion_of_all_coordinates_tells_all_columns_apart() {
+fn motion_of_all_coordinates_passes_the_excitation_check() {
     let result = identified("five_bar.toml", None);
     let check = excitation(&result);
     assert!(check.passed, "{}", check.words);

@@ -45,7 +45,7 @@ fn estimates(robot: &Robot, log: &Path, weighted: bool) -> Vec<Estimate> {
 
 /// Full tier only: it is the longest measured log.
 #[test]
-fn errors_are_those_that_were_published() {
+fn errors_match_published_values() {
     if !is_full() {
         return;
     }

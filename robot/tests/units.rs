@@ -58,7 +58,7 @@ fn of_units(result: &Identification) -> Vec<&Check> {
 }
 
 /// Signal, factor and drive of the only failed check of units, of a result that must not be used.
-fn slip(result: &Identification) -> (&str, f64, Option<&str>) {
+fn unit_error(result: &Identification) -> (&str, f64, Option<&str>) {
     assert_eq!(result.grade(), Grade::DoNotUse);
     let checks = of_units(result);
     let [check] = checks[..] else {
@@ -75,22 +75,22 @@ fn slip(result: &Identification) -> (&str, f64, Option<&str>) {
 }
 
 #[test]
-fn right_units_have_no_check_of_units() {
+fn correct_units_raise_no_unit_check() {
     for description in [ARM, AXIS] {
         assert!(of_units(&identified(description, |_| ())).is_empty());
     }
 }
 
 #[test]
-fn time_in_milliseconds_and_microseconds_is_named() {
+fn time_in_milliseconds_or_microseconds_is_detected() {
     for factor in [1e3, 1e6] {
         let result = identified(ARM, |signals| signals.frequency /= factor);
-        assert_eq!(slip(&result), ("time", factor, None));
+        assert_eq!(unit_error(&result), ("time", factor, None));
     }
 }
 
 #[test]
-fn time_in_milliseconds_is_named_in_the_document() {
+fn time_in_milliseconds_is_reported_in_the_json_result() {
     let result = identified(ARM, |signals| signals.frequency /= 1e3);
     let document = serde_json::to_value(&result).expect("a document");
     let checks = document["checks"].as_array().expect("checks");
@@ -104,17 +104,17 @@ fn time_in_milliseconds_is_named_in_the_document() {
 }
 
 #[test]
-fn a_linear_axis_in_millimetres_is_named() {
+fn a_linear_axis_in_millimetres_is_detected() {
     let described = AXIS.replace("instruments = \"simulated\"", "instruments = \"none\"");
     assert_ne!(described, AXIS);
     let result = identified(&described, |signals| {
         signals.positions.iter_mut().for_each(|q| *q *= 1e3);
     });
-    assert_eq!(slip(&result), ("positions", 1e3, None));
+    assert_eq!(unit_error(&result), ("positions", 1e3, None));
 }
 
 #[test]
-fn angles_of_one_drive_in_milliradians_are_named_with_the_drive() {
+fn milliradians_of_one_drive_are_detected_with_the_drive() {
     let result = identified(ARM, |signals| {
         signals
             .positions
@@ -123,11 +123,11 @@ fn angles_of_one_drive_in_milliradians_are_named_with_the_drive() {
             .step_by(2)
             .for_each(|q| *q *= 1e3);
     });
-    assert_eq!(slip(&result), ("positions", 1e3, Some("2")));
+    assert_eq!(unit_error(&result), ("positions", 1e3, Some("2")));
 }
 
 #[test]
-fn a_filter_above_the_sampling_frequency_asks_for_the_unit_of_time() {
+fn a_filter_above_the_sampling_frequency_suggests_a_time_unit() {
     let text = ARM.replacen(
         "[identification]",
         "[identification]\nfilter_cutoff = \"50 Hz\"",

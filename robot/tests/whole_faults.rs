@@ -38,7 +38,7 @@ fn refused(result: &Identification, kind: CheckKind) -> Vec<&str> {
 }
 
 #[test]
-fn joints_that_are_exchanged_with_their_torques_are_named() {
+fn exchanged_joints_and_torques_are_detected() {
     let result = identified(TEMPLATE, |positions, torques| {
         positions.swap(0, 1);
         torques.swap(0, 1);
@@ -48,7 +48,7 @@ fn joints_that_are_exchanged_with_their_torques_are_named() {
 }
 
 #[test]
-fn gravity_that_points_the_other_way_is_named() {
+fn reversed_gravity_is_detected() {
     let built = TEMPLATE.replacen("\"-9.81 m/s^2\"", "\"9.81 m/s^2\"", 1);
     assert_ne!(built, TEMPLATE);
     let result = identified(&built, |_, _| ());
@@ -57,7 +57,7 @@ fn gravity_that_points_the_other_way_is_named() {
 }
 
 #[test]
-fn one_position_column_for_two_joints_is_reported() {
+fn a_position_column_used_for_two_joints_is_detected() {
     let result = identified(TEMPLATE, |positions, _| {
         positions[1] = 0.1 - positions[0] * 32.0 / 45.0;
     });
@@ -66,7 +66,7 @@ fn one_position_column_for_two_joints_is_reported() {
 }
 
 #[test]
-fn the_torque_of_one_drive_in_another_unit_is_named() {
+fn a_torque_in_another_unit_is_detected() {
     let result = identified(TEMPLATE, |_, torques| torques[0] *= 1e3);
     let words = refused(&result, CheckKind::WrongGain).join("\n");
     assert!(words.contains("about 0.001 times as large"), "{words}");
@@ -81,7 +81,7 @@ fn failed_check(result: &Identification, kind: CheckKind) -> &Check {
 }
 
 #[test]
-fn a_gain_that_differs_by_the_sign_of_the_torque_is_named() {
+fn a_gain_that_depends_on_the_torque_sign_is_detected() {
     let result = identified(TEMPLATE, |_, torques| torques[0] += 0.03 * torques[0].abs());
     let check = failed_check(&result, CheckKind::MissingParameter);
     assert!(
@@ -91,7 +91,7 @@ fn a_gain_that_differs_by_the_sign_of_the_torque_is_named() {
 }
 
 #[test]
-fn a_fault_common_to_all_drives_spoils_parameters_of_each() {
+fn a_fault_of_all_drives_spoils_parameters_of_each_drive() {
     let result = identified(TEMPLATE, |positions, torques| {
         for (position, torque) in positions.iter().zip(torques) {
             *torque += 0.05 * (3.0 * position).sin();
@@ -124,7 +124,7 @@ fn a_filter_of_all_signals_is_detected_by_dry_friction() {
 }
 
 #[test]
-fn an_experiment_of_which_all_runs_are_held_out_is_refused() {
+fn an_experiment_without_training_runs_is_rejected() {
     let robot = Robot::from_text("described.toml", TEMPLATE).expect("the robot");
     let experiment = robot.experiment().expect("an experiment");
     let all: Vec<String> = experiment
@@ -151,7 +151,7 @@ fn the_faultless_robot_passes() {
 /// Inverse dynamics of base parameters, whose columns minimise operations, from estimates of other
 /// sums.
 #[test]
-fn functions_take_what_was_identified() {
+fn identified_base_parameters_fit_the_generated_functions() {
     use overact::{Function, Model};
     // One period of its run, without elimination: only base parameters are compared.
     let text = include_str!("../../robots/rx90.toml")

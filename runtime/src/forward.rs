@@ -331,7 +331,7 @@ mod tests {
     };
 
     #[test]
-    fn half_turns_by_series_and_by_sines_are_the_same() {
+    fn half_angle_series_and_sines_agree() {
         for angle in [
             0.0, 1e-200, 1e-9, 1e-3, 0.03, 0.0624, 0.0626, 0.5, 3.0, 7.0_f64,
         ] {
@@ -351,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_in_many_small_steps_is_the_whole_turn() {
+    fn many_small_rotations_sum_to_the_whole_rotation() {
         let axis = [0.48, -0.6, 0.64];
         for (count, angle) in [(1, 2.0), (100, 0.02), (1000, 0.002), (2, 1.0_f64)] {
             let mut pose = [0.0, 1.0, 0.0, 0.0, 0.0];
@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_that_vanish_far_away_have_led_nowhere() {
+    fn iterations_that_stop_far_from_the_start_have_not_converged() {
         for (far, has_led) in [(1e16, false), (1e3, true)] {
             let find = |pose: &[f64], step: &mut [f64]| {
                 step[0] = if pose[0] < far { far } else { 0.0 };
@@ -395,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_from_far_away_does_not_end_the_next_one() {
+    fn a_huge_step_does_not_end_the_iteration_early() {
         let mut lengths = [1e12, 0.3, 1e-3, 1e-14].into_iter();
         let find = |_: &[f64], step: &mut [f64]| {
             step[0] = lengths.next().unwrap_or_default();
@@ -406,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_symmetric_matrix_the_upper_triangle_decides() {
+    fn only_the_upper_triangle_of_the_matrix_is_read() {
         let mut upper = [
             [4.0, 2.0, -2.0],
             [f64::NAN, 10.0, 2.0],
@@ -435,7 +435,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_start_from_the_closed_form_where_it_is_near() {
+    fn newton_starts_from_a_nearby_closed_form_pose() {
         let (start, near, far) = ([1.0, 2.0], [1.005, 1.995], [1.0, 2.5]);
         assert_eq!(tried(None, start, false), [start]);
         assert_eq!(tried(Some(near), start, false), [near]);
@@ -447,7 +447,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_that_will_be_too_small_is_not_done() {
+    fn negligible_newton_steps_are_skipped() {
         // q(x) = x² to 4: Newton's steps are 1e-4, 2.5e-9, and then 1.6e-18.
         let (mut pose, mut evaluations) = ([1.9999], 0);
         let measured = Measured {
@@ -471,7 +471,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_that_is_no_number_leads_nowhere() {
+    fn non_finite_steps_do_not_converge() {
         for wrong in [[0.0, f64::NAN], [f64::NAN, 0.0], [f64::INFINITY, 0.0]] {
             let find = |_: &[f64], step: &mut [f64]| {
                 step.copy_from_slice(&wrong);
@@ -483,7 +483,7 @@ mod tests {
     }
 
     #[test]
-    fn singular_and_misshapen_systems_are_refused() {
+    fn singular_and_misshapen_systems_are_rejected() {
         let mut singular = [[1.0, 2.0], [2.0, 4.0]];
         let found = solve_positive_definite(singular.as_flattened_mut(), &mut [1.0, 2.0]);
         assert!(

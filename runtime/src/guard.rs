@@ -258,7 +258,7 @@ mod tests {
     use crate::Error;
 
     #[test]
-    fn the_first_input_that_is_not_finite_is_named() {
+    fn the_first_non_finite_input_is_reported() {
         let large = [f64::MAX, -f64::MAX, f64::MIN_POSITIVE, -0.0];
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             for at in 0..5 {
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_input_beyond_its_range_is_named() {
+    fn the_first_input_beyond_its_range_is_reported() {
         let (pose, twist) = ([1e3, -1e3], [0.5, 2.0]);
         let check =
             |pose: &[f64], twist: &[f64]| within(&[("pose", pose, 1e3), ("twist", twist, 2.0)]);
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn a_radicand_of_roundings_is_singular() {
+    fn radicands_of_rounding_size_are_singular() {
         assert_eq!(reach(1e-12, 1.0, "a"), Ok(()));
         assert_eq!(reach(0.0, 0.0, "a"), Ok(()));
         let near = reach(1e-16, 1.0, "a");
@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_is_too_large_is_an_overflow() {
+    fn too_large_values_are_overflows() {
         assert_eq!(size(-1e100, 1e100), Ok(()));
         for bad in [1.1e100, f64::INFINITY, f64::NAN] {
             assert_eq!(size(bad, 1e100), Err(Error::Overflow));
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_32_bits_are_checked_alike() {
+    fn single_precision_numbers_are_checked_alike() {
         let bad = finite(&[("pose", &[1.0_f32, f32::MAX]), ("twist", &[f32::NAN])]);
         assert_eq!(bad, Err(Error::NotFinite { input: "twist" }));
         assert_eq!(finite(&[("pose", &[f32::MIN_POSITIVE, -0.0])]), Ok(()));
@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn quaternions_of_any_length_are_scaled() {
+    fn quaternions_are_normalised_and_zero_is_rejected() {
         for length in [1e-300, 1e-150, 0.3, 1.0, 7.0, 1e150, 1e300] {
             let pose = [5.0, length, 0.0, -length, 2.0 * length];
             let unit = unit_quaternion(&pose, "pose").expect("a rotation");

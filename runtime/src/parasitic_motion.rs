@@ -89,7 +89,7 @@ mod tests {
 
     /// A point on the unit sphere above x and y, which does not rotate.
     #[test]
-    fn the_dependent_coordinates_follow() {
+    fn dependent_coordinates_follow_the_closure() {
         let mut pose = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0];
         displace::<f64>(&mut pose, &[0.6, 0.1], &[0, 1], |pose, errors, jacobian| {
             let [x, y, z] = [pose[0], pose[1], pose[2]];
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_that_cannot_be_brought_back_stays_a_number() {
+    fn poses_that_cannot_be_closed_stay_finite() {
         let mut pose = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0];
         displace::<f64>(
             &mut pose,

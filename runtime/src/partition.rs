@@ -209,7 +209,7 @@ mod tests {
     const JACOBIAN: [[f64; 2]; 3] = [[0.0, 3.0], [2.0, 1.0], [0.0, -6.0]];
 
     #[test]
-    fn projects_a_matrix_in_place() {
+    fn a_matrix_is_projected_in_place() {
         let partition = Partition::new(&JACOBIAN, &[0, 1]).unwrap();
         // J_aᵀ = [0 2; 3 1], so that Γ² = [(Γ_2 - Γ_1/2)/3, Γ_1/2].
         let mut inputs = [[4.0, 2.0, 0.0], [5.0, 1.0, 9.0]];
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_singular_partition_names_its_actuators() {
+    fn a_singular_partition_reports_its_actuators() {
         let error = Partition::new(&JACOBIAN, &[0, 2]).unwrap_err();
         let Error::SingularPartition { kept, condition } = error else {
             panic!("{error:?}");
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn the_condition_number_knows_no_units() {
+    fn the_condition_number_is_independent_of_units() {
         let metres = Partition::new(&JACOBIAN, &[0, 1]).unwrap();
         let millimetres = JACOBIAN.map(|[x, y]| [1e-3 * x, y]);
         let same = Partition::new(&millimetres, &[0, 1]).unwrap();
@@ -243,7 +243,7 @@ mod tests {
 
     /// The robot's own singularity: a coordinate's column is only rounding.
     #[test]
-    fn a_coordinate_that_no_actuator_moves_is_singular() {
+    fn an_undriven_coordinate_is_singular() {
         for small in [0.0, 1e-17, 1e-16] {
             let jacobian = [[1.0, small], [-1.0, 2.0 * small], [0.5, small]];
             let found = Partition::new(&jacobian, &[0, 1]);
@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn inputs_without_a_meaning_are_refused() {
+    fn invalid_inputs_are_rejected() {
         let outside = Partition::new(&JACOBIAN, &[0, 3]);
         let expected = Error::NoActuator {
             index: 3,

@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn tensions_are_the_nearest_to_the_minima() {
+    fn tensions_are_closest_to_their_minima() {
         for (solved, refused) in [
             compare::<4, 1>(1),
             compare::<8, 2>(2),
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn other_actuators_may_push() {
+    fn actuators_other_than_cables_may_push() {
         let half = 0.5_f64.sqrt();
         let system = [0.0, -4.0, half, half];
         let least = [1.0, f64::NEG_INFINITY];

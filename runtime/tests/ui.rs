@@ -36,7 +36,7 @@ fn copy_descriptions() -> Result<(), Box<dyn Error>> {
 /// Cases of the default tier: a robot that compiles, wrong uses of the macro, and two descriptions,
 /// one of which has only a wrong geometry. Other errors of descriptions are tested next to the code
 /// that reports them.
-const FEW: [&str; 7] = [
+const DEFAULT_TIER_CASES: [&str; 7] = [
     "pass.rs",
     "pass_functions.rs",
     "pass_single.rs",
@@ -63,14 +63,14 @@ fn readme() -> Result<PathBuf, Box<dyn Error>> {
 }
 
 #[test]
-fn wrong_uses_are_explained_and_right_ones_compile() -> Result<(), Box<dyn Error>> {
+fn invalid_attributes_are_explained_and_valid_ones_compile() -> Result<(), Box<dyn Error>> {
     copy_descriptions()?;
     let cases = trybuild::TestCases::new();
     for entry in fs::read_dir("tests/ui")? {
         let path = entry?.path();
         let name = path.file_name().unwrap_or_default();
         let name = name.to_string_lossy();
-        let is_of_the_tier = is_full() || FEW.contains(&&*name);
+        let is_of_the_tier = is_full() || DEFAULT_TIER_CASES.contains(&&*name);
         if path.extension().is_none_or(|e| e != "rs") || !is_of_the_tier {
             continue;
         }

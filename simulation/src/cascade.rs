@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn two_drives_bring_a_mass_to_its_reference_as_the_loops_say() {
+    fn cascaded_drives_follow_the_expected_step_response() {
         let model = Slide(Robot::new(TwoMotors));
         // 2 kg in total, no friction: half of it for each drive.
         let parameters = [0.3, 0.0, 0.0, 0.3, 0.0, 0.0, 1.0, 0.4];

@@ -268,7 +268,7 @@ mod tests {
     };
 
     #[test]
-    fn two_motors_on_one_mass_share_it() {
+    fn two_motors_share_the_inertia_of_one_mass() {
         let parameters = [0.3, 0.0, 0.0, 0.3, 0.0, 0.0, 1.0, 0.4];
         let inertia = effective_inertia(&Robot::new(TwoMotors), &parameters, std::iter::empty());
         // 2.0 kg in total.
@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn projection_leaves_no_internal_torque_and_the_limit_holds() {
+    fn projection_removes_internal_torques_and_limits_are_kept() {
         let model = Robot::new(Tripod);
         let pose = [0.1, 0.2];
         let mut jacobian = [0.0; 6];
@@ -337,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn the_papers_loop_is_stable_at_5_khz_and_not_at_600_hz() {
+    fn the_published_loop_is_stable_at_5_khz_but_not_at_600_hz() {
         let paper = Experiment::default();
         // The slowest pole of the continuous loop s³ + s² + 2.4 s + 1 (in units of ω_c) has the
         // real part −0.267. Sampling at 5 kHz adds delay but keeps the loop stable.

@@ -225,13 +225,13 @@ mod tests {
     }
 
     #[test]
-    fn an_ideal_drive_passes_the_command_on() {
+    fn an_ideal_drive_transmits_the_command() {
         let (currents, torques) = step_response(Drives::default(), 3);
         assert_eq!((currents, torques), (vec![1.0; 3], vec![1.0; 3]));
     }
 
     #[test]
-    fn the_delay_is_in_samples() {
+    fn torques_are_delayed_by_whole_samples() {
         let drives = Drives {
             delay_s: 3e-4,
             ..Drives::default()
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mode_has_its_frequency_and_damping() {
+    fn the_flexible_mode_has_its_frequency_and_damping() {
         let drives = Drives {
             flexible_hz: vec![50.0],
             flexible_damping: 0.1,
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn encoders_on_the_motors_show_the_deflection() {
+    fn motor_encoders_measure_the_deflection() {
         let experiment = Experiment {
             drives: Drives {
                 gain: vec![2.0, 1.0],
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn cogging_returns_with_every_tooth() {
+    fn cogging_repeats_with_every_tooth() {
         let experiment = Experiment {
             drives: Drives {
                 cogging: vec![0.3, 0.2],

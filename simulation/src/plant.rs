@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn the_work_of_the_torques_is_the_gain_of_kinetic_energy() {
+    fn torque_work_equals_the_kinetic_energy_gain() {
         // The step of a 5 kHz experiment with two steps per sample; energies are about 1 J.
         assert!(energy_residual(1e-4, 200) < 1e-13);
         // Fourth order: a step ten times as long has about 1e4 times the error.
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn viscous_friction_gives_the_exponential() {
+    fn viscous_friction_gives_exponential_decay() {
         let model = Robot::new(TwoMotors);
         let parameters = [0.3, 1.5, 0.0, 0.2, 2.5, 0.0, 1.0, 0.5];
         let (mass, friction, force) = (2.0, 4.0, 3.0);
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn coulomb_friction_stops_the_mass_and_holds_it() {
+    fn coulomb_friction_stops_and_holds_the_mass() {
         let model = Robot::new(TwoMotors);
         let parameters = [0.0, 0.0, 1.0, 0.0, 0.0, 2.0, 2.0, 0.0];
         let mut plant = Plant::new(&model, &parameters, &[0.0], &[0.6]);
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_that_does_not_add_turns_as_it_should() {
+    fn non_additive_poses_are_integrated() {
         let model = Robot::new(Shaft);
         let parameters = [0.1, 0.0, 0.0, 0.2, 0.0, 0.0, 0.1, 0.0];
         let mut plant = Plant::new(&model, &parameters, &[1.0, 0.0], &[1.0]);

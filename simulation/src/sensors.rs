@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn the_noise_is_white_gaussian_of_the_given_deviation() {
+    fn the_noise_is_white_with_the_given_deviation() {
         const N: usize = 200_000;
         let experiment = Experiment {
             torque_noise: vec![0.5, 2.0],

@@ -55,7 +55,7 @@ fn settled(record: &Record) -> impl Iterator<Item = (usize, [f64; 2], f64)> {
 const FORCE: f64 = MASS * AMPLITUDE * RATE * RATE;
 
 #[test]
-fn the_log_does_not_know_of_the_gain() {
+fn logged_torques_exclude_the_gain_error() {
     let ideal = record(|_| ());
     assert!(settled(&ideal).all(|(_, [a, b], force)| (a + b - force).abs() < 2e-3 * FORCE));
     let record = record(|experiment| experiment.drives.gain = vec![1.25, 0.8]);
@@ -67,7 +67,7 @@ fn the_log_does_not_know_of_the_gain() {
 }
 
 #[test]
-fn the_controller_fights_the_cogging() {
+fn the_controller_compensates_the_cogging() {
     let (amplitude, periods) = (0.4, 50.0);
     let record = record(|experiment| {
         experiment.drives.cogging = vec![amplitude, 0.0];
@@ -89,7 +89,7 @@ fn the_controller_fights_the_cogging() {
 }
 
 #[test]
-fn an_encoder_on_the_motor_shows_the_spring() {
+fn motor_encoders_measure_the_spring_deflection() {
     let stiffness = 1e5;
     let record = record(|experiment| {
         // The spring acts on the controller without delay, which would destabilise a fast one.
@@ -105,7 +105,7 @@ fn an_encoder_on_the_motor_shows_the_spring() {
 }
 
 #[test]
-fn the_mode_stands_between_torque_and_motion() {
+fn the_flexible_mode_acts_between_torque_and_motion() {
     let (mode, damping) = (40.0, 0.2);
     let record = record(|experiment| {
         experiment.bandwidth_hz = 5.0;
@@ -141,7 +141,7 @@ fn the_mode_stands_between_torque_and_motion() {
 }
 
 #[test]
-fn late_encoders_and_drives_spoil_the_tracking() {
+fn encoder_and_drive_delays_degrade_tracking() {
     // Slow enough for a delay of a millisecond to be harmless.
     let record = |change: fn(&mut Experiment)| {
         record(|experiment| {
@@ -174,7 +174,7 @@ fn late_encoders_and_drives_spoil_the_tracking() {
 }
 
 #[test]
-fn torques_saturate() {
+fn torques_saturate_at_their_limit() {
     let limit = 0.4 * FORCE;
     let record = record(|experiment| experiment.torque_limit = Some(vec![limit; 2]));
     let largest = record.torques.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
@@ -182,7 +182,7 @@ fn torques_saturate() {
 }
 
 #[test]
-fn drives_that_make_no_sense_are_told_at_once() {
+fn all_invalid_drive_settings_are_reported_together() {
     let mut bad = experiment();
     bad.encoder_delay_s = -1.0;
     bad.drives = Drives {

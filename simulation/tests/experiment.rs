@@ -90,7 +90,7 @@ fn pd_control_has_the_error_of_its_transfer_function() {
 }
 
 #[test]
-fn feed_forward_cuts_the_tracking_error() {
+fn feed_forward_reduces_the_tracking_error() {
     let model = Robot::new(Tripod);
     let experiment = tripod();
     let plain = Experiment {
@@ -138,7 +138,7 @@ fn internal_torque(model: &Robot<Tripod>, experiment: &Experiment) -> f64 {
 }
 
 #[test]
-fn projection_removes_the_internal_torque_that_encoders_cause() {
+fn projection_removes_internal_torques_caused_by_encoders() {
     let model = Robot::new(Tripod);
     let with = Experiment {
         encoder_resolution: vec![1e-5; 3],
@@ -192,7 +192,7 @@ fn sensors_have_the_stated_resolution_and_noise() {
 }
 
 #[test]
-fn the_result_depends_on_neither_threads_nor_order() {
+fn results_do_not_depend_on_threads_or_run_order() {
     let model = Robot::new(Tripod);
     let noisy = Experiment {
         torque_noise: vec![0.3; 3],
@@ -210,25 +210,27 @@ fn the_result_depends_on_neither_threads_nor_order() {
 }
 
 #[test]
-fn progress_ends_at_one_and_names_the_runs() {
-    let heard = std::cell::RefCell::new(Vec::new());
+fn progress_reaches_one_and_reports_the_runs() {
+    let progress_calls = std::cell::RefCell::new(Vec::new());
     simulate(&Robot::new(Tripod), &tripod(), &|fraction, run| {
-        heard.borrow_mut().push((fraction, run.to_string()));
+        progress_calls
+            .borrow_mut()
+            .push((fraction, run.to_string()));
     })
     .unwrap();
-    let heard = heard.into_inner();
-    assert!(heard.windows(2).all(|w| w[0].0 < w[1].0));
-    assert_eq!(heard.last().unwrap().0, 1.0);
+    let progress_calls = progress_calls.into_inner();
+    assert!(progress_calls.windows(2).all(|w| w[0].0 < w[1].0));
+    assert_eq!(progress_calls.last().unwrap().0, 1.0);
     assert!(
         ["free", "loaded"]
             .iter()
-            .all(|name| heard.iter().any(|(_, run)| run == name))
+            .all(|name| progress_calls.iter().any(|(_, run)| run == name))
     );
 }
 
 /// Least-squares parameters (ia of the legs, m, mx, my, zz) from the log, on the desired motion.
 #[test]
-fn the_log_of_a_dual_v_gives_its_parameters_back() {
+fn a_simulated_dualv_log_gives_the_true_parameters() {
     let model = Robot::new(DualV);
     let truth = [4.45e-2, 4.81e-2, 4.81e-2, 5.07e-2, 1.92, 0.0, 0.0, 2.06e-2];
     let mut parameters = vec![0.0; 20];
@@ -297,7 +299,7 @@ fn the_log_of_a_dual_v_gives_its_parameters_back() {
 }
 
 #[test]
-fn a_pose_that_does_not_add_is_followed() {
+fn non_additive_poses_are_tracked() {
     // The chart is not the angle, so twist and feed-forward come from the actuators' motion. The
     // second actuator passes half a turn.
     let model = Robot::new(Shaft);
@@ -326,7 +328,7 @@ fn a_pose_that_does_not_add_is_followed() {
 }
 
 #[test]
-fn all_bad_values_are_told_at_once() {
+fn all_invalid_settings_are_reported_together() {
     let mut bad = Experiment {
         sampling_hz: 600.0,
         duration_s: -1.0,
@@ -375,7 +377,7 @@ fn all_bad_values_are_told_at_once() {
 }
 
 #[test]
-fn runs_that_fail_are_named_with_their_time() {
+fn failing_runs_are_reported_with_their_time() {
     let model = Robot::new(Tripod);
     let mut far = tripod();
     far.runs[1].trajectory = Trajectory::PointToPoint {
@@ -422,7 +424,7 @@ fn runs_that_fail_are_named_with_their_time() {
 }
 
 #[test]
-fn the_log_reads_back_to_the_last_digit() {
+fn the_csv_log_round_trips_exactly() {
     let model = Robot::new(Tripod);
     let mut experiment = Experiment {
         torque_noise: vec![0.1; 3],
@@ -447,7 +449,7 @@ fn the_log_reads_back_to_the_last_digit() {
 }
 
 #[test]
-fn an_experiment_reads_from_toml() {
+fn an_experiment_is_read_from_toml() {
     let text = r#"
         parameters = [1.0, 2.0]
         torque_limit = [127.0, 127.0]

@@ -48,7 +48,7 @@ fn examples() -> [Trajectory; 2] {
 }
 
 #[test]
-fn derivatives_are_those_of_finite_differences() {
+fn derivatives_agree_with_finite_differences() {
     let h = 1e-5;
     for trajectory in examples() {
         for k in 0..40 {
@@ -65,7 +65,7 @@ fn derivatives_are_those_of_finite_differences() {
 }
 
 #[test]
-fn a_series_is_its_sum_of_sines() {
+fn a_periodic_trajectory_is_its_sum_of_sines() {
     let [periodic, _] = examples();
     let t = 0.7;
     let x = 0.3 * (2.0 * PI * 0.4 * t + 0.2).sin() - 0.2 * (2.0 * PI * 0.8 * t + 1.5).sin();
@@ -92,7 +92,7 @@ fn point_to_point_motions_rest_at_their_points() {
 }
 
 #[test]
-fn the_text_reads_back_as_the_same_trajectory() {
+fn trajectories_round_trip_through_toml() {
     for trajectory in examples() {
         let text = trajectory.to_toml();
         assert_eq!(

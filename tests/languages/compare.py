@@ -62,10 +62,10 @@ class Robot:
 
     def __init__(self, stem, compiled):
         self.stem = stem
-        told = subprocess.run(
+        inspected = subprocess.run(
             [BINARY, "inspect", ROBOTS / f"{stem}.toml", "--effort", "none", "--json"], capture_output=True, text=True
         )
-        self.model = json.loads(told.stdout)
+        self.model = json.loads(inspected.stdout)
         self.functions = {}
         for one in self.model["functions"]:
             name = one["function"]

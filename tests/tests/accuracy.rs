@@ -13,7 +13,7 @@ const FACTOR: f64 = 10.0;
 const ROUNDING: f64 = 1e-12;
 
 #[test]
-fn searched_forms_keep_the_digits_of_derived_ones() -> Result<(), Failure> {
+fn searched_forms_are_as_accurate_as_derived_ones() -> Result<(), Failure> {
     let robots = [
         ("dualv", by_tier([Effort::Quick, Effort::Thorough])),
         ("five_bar", Effort::Thorough),

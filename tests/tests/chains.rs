@@ -38,32 +38,32 @@ fn between(from: &str, to: &str) -> Result<(), Failure> {
 }
 
 #[test]
-fn from_the_ground() -> Result<(), Failure> {
+fn chains_from_the_ground_agree() -> Result<(), Failure> {
     between("ground", "c")
 }
 
 #[test]
-fn along_a_branch() -> Result<(), Failure> {
+fn chains_along_a_branch_agree() -> Result<(), Failure> {
     between("a", "c")
 }
 
 #[test]
-fn back_along_a_branch() -> Result<(), Failure> {
+fn chains_back_along_a_branch_agree() -> Result<(), Failure> {
     between("c", "a")
 }
 
 #[test]
-fn from_branch_to_branch_against_a_slide() -> Result<(), Failure> {
+fn chains_between_branches_against_a_prismatic_joint_agree() -> Result<(), Failure> {
     between("c", "e")
 }
 
 #[test]
-fn from_branch_to_branch_along_a_slide() -> Result<(), Failure> {
+fn chains_between_branches_along_a_prismatic_joint_agree() -> Result<(), Failure> {
     between("e", "b")
 }
 
 #[test]
-fn two_at_once() -> Result<(), Failure> {
+fn two_chains_on_one_skeleton_agree() -> Result<(), Failure> {
     let text = format!(
         "{SKELETON}{}{}",
         drive("one", "d", "c"),
@@ -75,7 +75,7 @@ fn two_at_once() -> Result<(), Failure> {
 /// Chains on the bodies of a chain on the ground: from it, and in the full tier to it and in
 /// between.
 #[test]
-fn on_a_chain_from_the_ground() -> Result<(), Failure> {
+fn chains_on_a_grounded_chain_agree() -> Result<(), Failure> {
     let first = drive("one", "ground", "c");
     let ends = [("one.2", "e"), ("d", "one.2"), ("one.3", "one.1")];
     for (from, to) in by_tier([&ends[..1], &ends]) {
@@ -87,7 +87,7 @@ fn on_a_chain_from_the_ground() -> Result<(), Failure> {
 
 /// A chain on a moving chain, and in the full tier a third one on both.
 #[test]
-fn on_a_chain_that_is_carried() -> Result<(), Failure> {
+fn chains_on_a_moving_chain_agree() -> Result<(), Failure> {
     let drives = [
         drive("one", "a", "c"),
         drive("two", "one.2", "e"),
@@ -124,7 +124,7 @@ home = {{ turn = "15 deg", slide = "0.1 m" }}
 /// Branches on bodies of chains: with a chain's end, and in the full tier with a chain's start and
 /// with no chain.
 #[test]
-fn branches_on_chains() -> Result<(), Failure> {
+fn branches_on_chains_agree() -> Result<(), Failure> {
     let first = drive("one", "ground", "c");
     if is_full() {
         compare(
@@ -146,7 +146,7 @@ fn branches_on_chains() -> Result<(), Failure> {
 
 /// A joint coupled to a later one: in a skeleton, to one of another branch, and in a chain.
 #[test]
-fn followers_before_their_leaders() -> Result<(), Failure> {
+fn joints_coupled_to_later_joints_agree() -> Result<(), Failure> {
     let follower = |leg: &str, leader: &str| {
         format!(
             "[[leg.{leg}.joint]]\nname = \"f\"\ntype = \"revolute\"\ntheta = \"0.2 * q_{leader}\"\n"
@@ -169,7 +169,7 @@ fn followers_before_their_leaders() -> Result<(), Failure> {
 
 /// A four-bar on a moving arm, whose coupler has its own pin on the crank.
 #[test]
-fn rigid_ends() -> Result<(), Failure> {
+fn chains_with_rigid_ends_agree() -> Result<(), Failure> {
     let text = r#"name = "RigidEnd"
 [leg.arm]
 [[leg.arm.joint]]

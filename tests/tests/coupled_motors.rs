@@ -312,7 +312,7 @@ fn motors_of_a_leg_are_placed_with_it() -> Result<(), Failure> {
 
 /// An actuated joint may have a motor in addition to coupled ones.
 #[test]
-fn actuated_joints_come_before_motors() -> Result<(), Failure> {
+fn actuated_joints_are_ordered_before_motors() -> Result<(), Failure> {
     let ankle = description("ankle")?.text;
     let text = overact_tests::support::motors::mechanism_only(&ankle)
         + "\n[motor.helper]\nturns = \"left.q_crank + right.q_crank\"\n";
@@ -326,16 +326,16 @@ fn actuated_joints_come_before_motors() -> Result<(), Failure> {
 
 /// Motors that leave a motion free are refused, and so are those of unknown joints.
 #[test]
-fn wrong_motors_are_refused() -> Result<(), Failure> {
+fn invalid_motors_are_rejected() -> Result<(), Failure> {
     let bar = description("five_bar")?.text;
     let refused = |motors: &str| -> Result<String, Failure> {
         let text = with_motors(&bar, motors)?;
         let error = model_of("five_bar", &text).err().ok_or("accepted")?;
         Ok(error.to_string())
     };
-    let twins = "[motor.a]\nturns = \"left.q1 + right.q1\"\n\
+    let dependent_motors = "[motor.a]\nturns = \"left.q1 + right.q1\"\n\
                  [motor.b]\nturns = \"2*left.q1 + 2*right.q1\"\n";
-    let error = refused(twins)?;
+    let error = refused(dependent_motors)?;
     for words in [
         "the actuators never determine the platform's motion",
         "the motors `a` and `b` have the same effect: let one of them turn another combination",

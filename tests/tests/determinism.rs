@@ -7,7 +7,7 @@ use std::fs;
 use std::time::Instant;
 
 #[test]
-fn the_same_description_gives_the_same_bytes() -> Result<(), Failure> {
+fn code_generation_is_deterministic() -> Result<(), Failure> {
     // The freshness of the checked-in modules shows the same for every robot.
     for stem in ["emps", by_tier(["five_bar", "planar_3prr"])] {
         let source = description(stem)?;
@@ -29,7 +29,7 @@ fn the_same_description_gives_the_same_bytes() -> Result<(), Failure> {
 }
 
 #[test]
-fn threads_give_the_same_bytes() -> Result<(), Failure> {
+fn parallel_threads_generate_the_same_bytes() -> Result<(), Failure> {
     let source = description(by_tier(["five_bar", "dualv"]))?;
     let one = || model_of(&source).map(|model| rust::file(&model, &source.name));
     let (a, b) = std::thread::scope(|scope| {
@@ -42,7 +42,7 @@ fn threads_give_the_same_bytes() -> Result<(), Failure> {
 }
 
 #[test]
-fn generated_text_names_no_folder_of_this_machine() -> Result<(), Failure> {
+fn generated_text_contains_no_local_path() -> Result<(), Failure> {
     let here = repository("").canonicalize()?;
     let here = here.to_string_lossy();
     let source = description(by_tier(["emps", "five_bar"]))?;

@@ -178,7 +178,7 @@ fn robots_of_the_library_agree_with_springs_on_all_joints() -> Result<(), Failur
 }
 
 #[test]
-fn the_power_of_motors_is_the_change_of_the_energy_with_springs() -> Result<(), Failure> {
+fn motor_power_is_the_energy_rate_with_springs() -> Result<(), Failure> {
     for (seed, stem) in seeded(robots()) {
         let text = with_springs(&description(stem)?.text, 100 + seed);
         balance(stem, &text)?;
@@ -198,8 +198,7 @@ fn robots_of_the_library_agree_with_springs_between_points() -> Result<(), Failu
 }
 
 #[test]
-fn the_power_of_motors_is_the_change_of_the_energy_with_springs_between_points()
--> Result<(), Failure> {
+fn motor_power_is_the_energy_rate_with_springs_between_points() -> Result<(), Failure> {
     let all = robots().into_iter().chain(by_tier(SERIAL).iter().copied());
     for (seed, stem) in seeded(all) {
         let text = with_point_springs(&description(stem)?.text, 100 + seed, false)?;
@@ -260,7 +259,7 @@ fn random_platforms_with_parasitic_motion_agree_with_springs() -> Result<(), Fai
 
 /// The sine of half a passive angle does not follow from the angle's sine and cosine alone.
 #[test]
-fn a_fraction_of_a_passive_angle_takes_newtons_method() -> Result<(), Failure> {
+fn a_fraction_of_a_passive_angle_needs_newtons_method() -> Result<(), Failure> {
     let bar = description("five_bar")?.text;
     let spring = |formula: &str| {
         let link = "d = \"l_1\"\n";
@@ -282,7 +281,7 @@ fn a_fraction_of_a_passive_angle_takes_newtons_method() -> Result<(), Failure> {
 
 /// A force between points that coincide has no direction.
 #[test]
-fn points_that_coincide_at_home_are_refused() -> Result<(), Failure> {
+fn springs_between_coincident_points_are_rejected() -> Result<(), Failure> {
     let spring = "\n[[spring]]\nname = \"gas\"\nfrom = { body = \"ground\", at = [\"-half\", 0, 0] }\n\
                   to = { body = \"left.1\" }\nforce = \"l\"\n";
     let text = description("five_bar")?.text + spring;

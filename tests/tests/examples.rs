@@ -48,7 +48,7 @@ fn has_example(text: &str) -> bool {
 }
 
 #[test]
-fn crates_that_look_for_no_example_have_none() -> Result<(), Failure> {
+fn packages_without_doctests_have_no_examples() -> Result<(), Failure> {
     let mut silent = 0;
     for folder in packages()? {
         let manifest = fs::read_to_string(folder.join("Cargo.toml"))?;
@@ -72,7 +72,7 @@ fn crates_that_look_for_no_example_have_none() -> Result<(), Failure> {
 }
 
 #[test]
-fn examples_are_told_from_other_blocks() {
+fn doctest_blocks_are_distinguished_from_other_blocks() {
     assert!(has_example("//! ```\n//! let a = 1;\n//! ```\n"));
     assert!(has_example("/// ```no_run\n/// ```\n"));
     assert!(has_example("    /// ```edition2024\n    /// ```\n"));

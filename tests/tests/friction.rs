@@ -60,23 +60,23 @@ fn compare(text: &str, compiled: &dyn Model) -> Result<(), Failure> {
 }
 
 #[test]
-fn an_arm_with_a_follower_and_a_coupled_motor() -> Result<(), Failure> {
+fn friction_agrees_for_a_coupled_joint_and_motor() -> Result<(), Failure> {
     compare(ARM, &FrictionArm)
 }
 
 #[test]
-fn a_five_bar_with_passive_joints() -> Result<(), Failure> {
+fn friction_agrees_for_passive_joints() -> Result<(), Failure> {
     compare(BAR, &FrictionBar)
 }
 
 #[test]
-fn a_five_bar_with_springs_and_known_torques() -> Result<(), Failure> {
+fn springs_and_known_torques_agree_for_a_five_bar() -> Result<(), Failure> {
     compare(SPRING, &SpringBar)
 }
 
 /// More motors than degrees of freedom, each of which turns joints of one leg or two.
 #[test]
-fn a_bar_with_coupled_motors() -> Result<(), Failure> {
+fn friction_agrees_for_coupled_motors() -> Result<(), Failure> {
     compare(MOTOR, &MotorBar)?;
     // Actuators from the positions of the joints, as an excitation or a calibration asks for them.
     let joints = [0.3, -0.7, 1.1, 0.4];
@@ -89,13 +89,13 @@ fn a_bar_with_coupled_motors() -> Result<(), Failure> {
 }
 
 #[test]
-fn an_arm_with_screws() -> Result<(), Failure> {
+fn friction_agrees_for_helical_joints() -> Result<(), Failure> {
     compare(SCREW, &ScrewArm)
 }
 
 /// Friction at rest is the mean of both directions, like an offset, and no division fails.
 #[test]
-fn at_rest_friction_has_a_value() -> Result<(), Failure> {
+fn friction_at_rest_is_finite() -> Result<(), Failure> {
     let (model, _) = described(ARM)?;
     let mut columns = vec![0.0; 3 * model.selection.standard.len()];
     let (joints, still) = ([0.1, 0.2, 0.3], [0.0; 3]);
@@ -121,7 +121,7 @@ fn at_rest_friction_has_a_value() -> Result<(), Failure> {
 /// A motor of one joint with direction-dependent friction like the joint's: duplicates are
 /// regrouped.
 #[test]
-fn friction_that_stands_there_twice_is_regrouped() -> Result<(), Failure> {
+fn duplicate_friction_of_joint_and_motor_is_regrouped() -> Result<(), Failure> {
     let text = "name = \"Twice\"\n[[leg.arm.joint]]\ntype = \"revolute\"\nactuated = true\n\
                 parameters = [\"zz\", \"fv\", \"fs\", \"off\"]\n\
                 [[leg.arm.motor]]\nturns = \"q1\"\nparameters = [\"friction by direction\"]\n\

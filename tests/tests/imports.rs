@@ -339,7 +339,7 @@ fn circles(modules: &[Module]) -> Vec<(String, BTreeSet<String>)> {
 }
 
 #[test]
-fn imports_run_downwards() {
+fn imports_follow_the_layer_order() {
     let mut all = Vec::new();
     for layers in &LAYER_ORDERS {
         let mut seen = BTreeSet::new();
@@ -348,17 +348,17 @@ fn imports_run_downwards() {
             let violations = layers.violations(file).into_iter();
             all.extend(violations.map(|one| format!("{}: {one}", layers.folder)));
         }
-        let gone = layers
+        let missing = layers
             .order
             .iter()
             .filter(|module| !seen.contains(**module));
-        all.extend(gone.map(|module| format!("{}: there is no `{module}`", layers.folder)));
+        all.extend(missing.map(|module| format!("{}: there is no `{module}`", layers.folder)));
     }
     assert!(all.is_empty(), "{}", all.join("\n"));
 }
 
 #[test]
-fn no_folder_has_a_circle_of_imports() {
+fn no_folder_has_cyclic_imports() {
     const OTHERS: [&str; 4] = ["core", "runtime", "macros", "xtask"];
     let mut left = BTreeMap::new();
     let folders = LAYER_ORDERS
@@ -374,52 +374,64 @@ fn no_folder_has_a_circle_of_imports() {
 }
 
 #[test]
-fn an_import_from_above_is_seen() {
+fn an_import_from_a_higher_layer_is_detected() {
     let layers = LayerOrder {
         folder: "crate",
         module: "",
         order: &["low", "high"],
     };
-    let complaints = |text: &str, file: &[&str]| {
+    let violation_count = |text: &str, file: &[&str]| {
         let file = Module::of(file, text, &BTreeMap::new());
         layers.violations(&file).len()
     };
-    assert_eq!(complaints("use crate::{low::A, high::B};", &["high"]), 0);
-    assert_eq!(complaints("use crate::{low::A, high::B};", &["low"]), 1);
-    assert_eq!(complaints("fn a() { super::high::b(); }", &["low"]), 1);
-    assert_eq!(complaints("use super::super::high;", &["low", "room"]), 1);
-    assert_eq!(complaints("use super::high;", &["low", "room"]), 0);
-    assert_eq!(complaints("use crate::Thing;", &["high"]), 1);
     assert_eq!(
-        complaints("// crate::high\npub(crate) fn a() {}", &["low"]),
+        violation_count("use crate::{low::A, high::B};", &["high"]),
         0
     );
     assert_eq!(
-        complaints("#[cfg(test)] mod tests { use crate::high; }", &["low"]),
+        violation_count("use crate::{low::A, high::B};", &["low"]),
+        1
+    );
+    assert_eq!(violation_count("fn a() { super::high::b(); }", &["low"]), 1);
+    assert_eq!(
+        violation_count("use super::super::high;", &["low", "room"]),
+        1
+    );
+    assert_eq!(violation_count("use super::high;", &["low", "room"]), 0);
+    assert_eq!(violation_count("use crate::Thing;", &["high"]), 1);
+    assert_eq!(
+        violation_count("// crate::high\npub(crate) fn a() {}", &["low"]),
         0
     );
-    assert_eq!(complaints("", &["attic"]), 1);
+    assert_eq!(
+        violation_count("#[cfg(test)] mod tests { use crate::high; }", &["low"]),
+        0
+    );
+    assert_eq!(violation_count("", &["attic"]), 1);
 }
 
 #[test]
-fn an_import_from_above_is_seen_inside_a_module() {
+fn an_import_from_a_higher_layer_of_a_module_is_detected() {
     let layers = LayerOrder {
         folder: "crate",
         module: "room",
         order: &["low", "high"],
     };
-    let complaints = |text: &str, file: &[&str]| {
+    let violation_count = |text: &str, file: &[&str]| {
         let file = Module::of(file, text, &BTreeMap::new());
         layers.violations(&file).len()
     };
-    assert_eq!(complaints("use crate::room::low::A;", &["room", "high"]), 0);
-    assert_eq!(complaints("use super::high::A;", &["room", "low"]), 1);
-    assert_eq!(complaints("use super::high;", &["room"]), 0);
-    assert_eq!(complaints("use crate::room::high::A;", &["other"]), 0);
+    assert_eq!(
+        violation_count("use crate::room::low::A;", &["room", "high"]),
+        0
+    );
+    assert_eq!(violation_count("use super::high::A;", &["room", "low"]), 1);
+    assert_eq!(violation_count("use super::high;", &["room"]), 0);
+    assert_eq!(violation_count("use crate::room::high::A;", &["other"]), 0);
 }
 
 #[test]
-fn a_circle_is_seen_through_a_reexport() {
+fn an_import_cycle_through_a_reexport_is_detected() {
     let files = |first: &str| {
         let reexports = BTreeMap::from([(
             vec!["room".to_owned(), "Thing".to_owned()],

@@ -30,7 +30,7 @@ fn is_numbered(name: &str) -> bool {
 }
 
 #[test]
-fn most_values_have_names() -> Result<(), Failure> {
+fn most_generated_values_have_descriptive_names() -> Result<(), Failure> {
     let mut files = fs::read_dir(repository("generated/src"))?
         .map(|entry| Ok(entry?.path()))
         .collect::<Result<Vec<_>, Failure>>()?;

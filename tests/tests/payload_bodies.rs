@@ -103,7 +103,7 @@ fn payloads_on_bodies_agree_with_bodies_of_the_reference() -> Result<(), Failure
 
 /// Payloads on the ground, on missing bodies, and next to another description of a payload.
 #[test]
-fn wrong_payloads_are_refused() -> Result<(), Failure> {
+fn invalid_payloads_are_rejected() -> Result<(), Failure> {
     let bar = mechanism_only(&description("five_bar")?.text);
     for (tables, words) in [
         (

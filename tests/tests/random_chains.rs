@@ -21,7 +21,7 @@ const COUNT: [u64; 3] = [2, 25, 50];
 const DRAWS: u64 = 20;
 
 #[test]
-fn random_trees_with_chains() -> Result<(), Failure> {
+fn random_trees_with_chains_agree_with_the_reference() -> Result<(), Failure> {
     let own = std::env::var("OVERACT_RANDOM_SEED");
     let own: Option<u64> = own.ok().and_then(|seed| seed.parse().ok());
     let count = if own.is_some() { 1 } else { drawn(COUNT) };
@@ -77,7 +77,7 @@ fn random_trees_with_chains() -> Result<(), Failure> {
 
 /// Errors of draws must not be syntax errors.
 #[test]
-fn draws_are_well_written() {
+fn drawn_descriptions_are_syntactically_valid() {
     for seed in 0..200 {
         let text = skeleton(seed);
         let parsed = overact_codegen::description::parse(&Source::new("random.toml", text.clone()));

@@ -39,7 +39,7 @@ const STATES: usize = 3;
 /// Mechanisms in the default and full tier; the latter must cover every feature and defect.
 const COUNT: [u64; 3] = [16, 208, 208];
 /// Largest condition number of the model's own partition for the plain comparison.
-const PLAIN: f64 = 1e3;
+const PLAIN_CONDITION: f64 = 1e3;
 /// Largest joint rate on the path for differentiating the energy, rad/s and m/s.
 const RATE: f64 = 2.0;
 /// Largest error of the power: that of seven-point differences of the energy.
@@ -47,8 +47,8 @@ const DIFFERENCES: f64 = 1e-7;
 
 /// Increment of the seed of a mechanism whose legs do not constrain the platform to its motion;
 /// also the limit for redrawing.
-const REDRAWN: u64 = 8_000_000;
-const MOST_REDRAWN: u64 = 30 * REDRAWN;
+const REDRAW_INCREMENT: u64 = 8_000_000;
+const REDRAW_LIMIT: u64 = 30 * REDRAW_INCREMENT;
 
 /// Number from the environment.
 fn setting(name: &str) -> Option<u64> {
@@ -134,8 +134,8 @@ fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
         Err(errors) => {
             // Legs that allow the platform further motions make another robot; draw a new one.
             let is_not_held = |error: &Diagnostic| error.kind == DiagnosticKind::NotHeld;
-            if errors.iter().any(is_not_held) && sketch.seed < MOST_REDRAWN {
-                return agree(&Sketch::draw(sketch.seed + REDRAWN));
+            if errors.iter().any(is_not_held) && sketch.seed < REDRAW_LIMIT {
+                return agree(&Sketch::draw(sketch.seed + REDRAW_INCREMENT));
             }
             return Err(format!("refused:\n{}", errors.render_plain(&source)).into());
         }
@@ -152,11 +152,11 @@ fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
     let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
     let [mut comparison, mut of_base] = [TOLERANCE, OF_BASE].map(Comparison::new);
     let evaluated = Evaluated(&model);
-    let is_well_kept = is_well_kept(&model, &evaluated, &all)?;
+    let is_well_conditioned = is_well_conditioned(&model, &evaluated, &all)?;
     let has_masses = has_masses(&truths)?;
     for function in &model.functions {
         let is_moved = has_masses || !matches!(function.computes, Function::ForwardDynamics(_));
-        if is_moved && (is_well_kept || !depends_on_kept(function.computes)) {
+        if is_moved && (is_well_conditioned || !depends_on_kept(function.computes)) {
             let own = if function.name.contains("dynamics_base")
                 || function.name.contains("matrix_base")
                 || function.name.contains("bias_base")
@@ -250,7 +250,7 @@ const fn depends_on_kept(function: Function) -> bool {
 /// Whether the model's kept actuators are well conditioned at all samples.
 ///
 /// Otherwise the partition is compared with a tolerance for its condition number.
-fn is_well_kept(
+fn is_well_conditioned(
     model: &RobotModel,
     evaluated: &Evaluated<'_>,
     all: &[Sample],
@@ -259,7 +259,9 @@ fn is_well_kept(
     for sample in all.iter().filter(|_| !model.is_tree()) {
         let jacobian = evaluated.call("inverse_jacobian", sample)?;
         let still = DMatrix::zeros(kept.len(), 1);
-        if project(&jacobian, kept, &still).map_or(true, |(_, condition)| condition > PLAIN) {
+        if project(&jacobian, kept, &still)
+            .map_or(true, |(_, condition)| condition > PLAIN_CONDITION)
+        {
             return Ok(false);
         }
     }
@@ -297,7 +299,7 @@ fn balance(expected: &Expected, evaluated: &Evaluated<'_>, all: &[Sample]) -> Re
 }
 
 #[test]
-fn damaged_mechanisms_are_refused_with_a_reason() {
+fn damaged_mechanisms_are_rejected_with_a_reason() {
     let results = for_each_seed(|seed| {
         let sketch = Sketch::draw(seed);
         let defects = Defect::ALL.into_iter();

@@ -29,7 +29,7 @@ const GROUPS: [Option<&str>; 4] = [
 const DRAWS: u64 = 10;
 
 #[test]
-fn random_platforms_with_parasitic_motion() -> Result<(), Failure> {
+fn random_parasitic_platforms_agree_with_the_reference() -> Result<(), Failure> {
     let own = std::env::var("OVERACT_RANDOM_SEED");
     let own: Option<u64> = own.ok().and_then(|seed| seed.parse().ok());
     let count = if own.is_some() { 1 } else { drawn(COUNT) };

@@ -22,7 +22,7 @@ const STATES: [usize; 2] = [4, 60];
 
 /// The power of the motors is the rate of change of the energy from positions and velocities.
 #[test]
-fn the_power_of_motors_of_screws_is_the_change_of_the_energy() -> Result<(), Failure> {
+fn motor_power_is_the_energy_rate_with_screws() -> Result<(), Failure> {
     let text = SCREW.replace("known = \"2 N m * cos(q) + 0.1 N m/rad * q\"\n", "");
     let source = Source::new("screw_arm.toml", text);
     let model = model_with(&source, &Request::with_effort(Effort::None))?;
@@ -55,7 +55,7 @@ fn the_power_of_motors_of_screws_is_the_change_of_the_energy() -> Result<(), Fai
 
 /// Compiled and evaluated robots agree up to rounding: both use the same lead.
 #[test]
-fn compiled_screws_move_as_evaluated_ones() -> Result<(), Failure> {
+fn compiled_and_interpreted_screws_agree() -> Result<(), Failure> {
     let source = Source::new("screw_arm.toml", SCREW);
     let model = model_with(&source, &Request::with_effort(Effort::None))?;
     let mechanism = reference(&model.mechanism, workspace(&model));
@@ -95,7 +95,7 @@ fn driven(keys: &str, home: &str) -> String {
 }
 
 #[test]
-fn a_skeleton_with_a_screw_carries_chains() -> Result<(), Failure> {
+fn chains_on_a_skeleton_with_a_screw_agree() -> Result<(), Failure> {
     let text = driven("type = \"prismatic\"\nactuated = true", "0.6 m");
     let source = Source::new("screws.toml", text);
     let failures = against_reference(source, by_tier(STATES), [TOLERANCE; 2])?;
@@ -108,7 +108,7 @@ fn a_skeleton_with_a_screw_carries_chains() -> Result<(), Failure> {
 /// The slide of one follows from a distance, without an equation of sines for its angle. The angle
 /// of the other follows from a rod's orientation, without an equation for its slide.
 #[test]
-fn chains_are_solved_for_screws() -> Result<(), Failure> {
+fn screws_in_chains_are_solved_by_newtons_method() -> Result<(), Failure> {
     for keys in ["actuated = true", "parameters = [\"fv\", \"m\"]"] {
         let text = driven(
             &format!("type = \"helical\"\npitch = \"0.5 m\"\n{keys}"),

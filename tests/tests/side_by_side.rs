@@ -43,7 +43,7 @@ const FUNCTIONS: [&str; 13] = [
 ];
 
 #[test]
-fn side_by_side_or_in_a_row_it_is_the_same() -> Result<(), Failure> {
+fn parallel_and_sequential_evaluation_give_equal_results() -> Result<(), Failure> {
     if !overact_tier::is_full() {
         return Ok(());
     }
@@ -113,13 +113,13 @@ fn run(folder: &Path, flags: &str, features: &[&str]) -> Result<(), Failure> {
         .args(["run", "--release", "--offline", "--quiet"])
         .args(features)
         .output()?;
-    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    let printed = String::from_utf8_lossy(&run.stdout).into_owned();
     let failed = String::from_utf8_lossy(&run.stderr).into_owned();
     assert!(
         run.status.success(),
-        "{flags} {features:?}: {said}\n{failed}"
+        "{flags} {features:?}: {printed}\n{failed}"
     );
-    assert!(said.contains("agree"), "{said}");
+    assert!(printed.contains("agree"), "{printed}");
     Ok(())
 }
 

@@ -91,7 +91,7 @@ mod tests {
     use crate::Failure;
 
     #[test]
-    fn only_sources_that_cannot_read_the_tier_are_the_same_in_all_tiers() {
+    fn sources_that_may_read_the_tier_are_recognised() {
         let read = |path: &str| match path {
             "plain.rs" => Ok("use overact::Model;".to_owned()),
             "tiered.rs" => Ok("use overact_tier::by_tier;".to_owned()),

@@ -153,13 +153,13 @@ mod tests {
     use super::{Code, check, escaped, read, redirected};
 
     #[test]
-    fn the_page_of_errors_is_fresh() {
+    fn the_error_page_is_fresh() {
         check().expect("a fresh page");
     }
 
     /// Explanations must only name keys that exist.
     #[test]
-    fn explanations_name_keys_that_there_are() {
+    fn explanations_name_existing_keys_only() {
         let manual = [
             "robots/README.md",
             "docs/cli.md",
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn links_lead_into_the_book_or_to_the_repository() {
+    fn links_are_redirected_into_the_book_or_to_the_repository() {
         let text = "[a](../robots/README.md#data) [b](trust.md) [c](../robots/tx40.toml) [d](#e)";
         let expected = "[a](keys.md#data) [b](trust.md) [c](https://github.com/overact/overact/blob/main/robots/tx40.toml) [d](#e)";
         assert_eq!(redirected("docs/x.md", text), expected);
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn tables_of_toml_are_no_links() {
+    fn toml_table_names_are_not_links() {
         assert_eq!(escaped("see [data] and `[a]`"), "see \\[data\\] and `[a]`");
     }
 }

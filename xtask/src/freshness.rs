@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn sections_are_those_of_robots_and_differences_are_told() {
+    fn manifest_sections_match_robots_and_differences_are_reported() {
         let text = text(&[module("a", "one"), module("b", "two")], 1);
         let sections = sections(&text);
         assert_eq!(sections.len(), 3);

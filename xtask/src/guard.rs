@@ -198,7 +198,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn a_tag_names_the_version() {
+    fn the_tag_must_match_the_version() {
         assert_eq!(tag_problem("v1.2.0", "1.2.0"), None);
         for tag in ["1.2.0", "v1.2.1", "v1.2", "v1.2.0-rc.1", ""] {
             let problem = tag_problem(tag, "1.2.0").unwrap_or_default();
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn repeated_versions_are_compared() {
+    fn repeated_version_numbers_must_match() {
         for line in &VERSION_LINES {
             let text = read(line.file).expect("a file with a version");
             let own = env!("CARGO_PKG_VERSION");
@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn changelog_and_citation_have_one_date() {
+    fn changelog_and_citation_dates_must_match() {
         let changelog = "# Changelog\n\n## 1.2.0 - 2026-02-28\n";
         let citation = "version: 1.2.0\ndate-released: 2026-02-28\n";
         assert_eq!(dates(changelog, citation, "1.2.0"), [""; 0]);
@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn changed_files_are_named() {
+    fn uncommitted_changes_are_reported() {
         assert_eq!(tree(""), [""; 0]);
         let problems = tree(" M Cargo.toml\n?? new file.txt\n");
         assert_eq!(problems.len(), 2);
@@ -260,13 +260,13 @@ mod tests {
     }
 
     #[test]
-    fn a_tag_has_to_exist() {
+    fn a_missing_tag_is_reported() {
         let problem = tagged_commit("v0.0.0-never").expect("git");
         assert_eq!(problem.as_deref(), Some("there is no tag v0.0.0-never"));
     }
 
     #[test]
-    fn empty_tokens_are_missing() {
+    fn empty_tokens_are_reported_as_missing() {
         let both = |name: &str| TOKENS.contains(&name).then(|| "a token".to_owned());
         assert_eq!(tokens(both), [""; 0]);
         assert_eq!(tokens(|_| None).len(), TOKENS.len());
@@ -277,7 +277,7 @@ mod tests {
 
     /// A package with a locked dependency, and a registry that has it.
     #[test]
-    fn a_yanked_dependency_is_found() {
+    fn a_yanked_dependency_is_detected() {
         let folder = target().expect("a target folder").join("xtask-yanked");
         let write = |path: &str, text: &str| {
             let file = folder.join(path);

@@ -65,7 +65,7 @@ mod tests {
     use super::{generator, hash, without_comments};
 
     #[test]
-    fn hashes_are_those_of_fnv_1a() {
+    fn hashes_match_published_fnv_1a_values() {
         // Published values of the 64-bit variant.
         assert_eq!(hash(""), 0xcbf2_9ce4_8422_2325);
         assert_eq!(hash("a"), 0xaf63_dc4c_8601_ec8c);
@@ -73,14 +73,14 @@ mod tests {
     }
 
     #[test]
-    fn comments_do_not_count() {
+    fn comments_do_not_change_the_hash() {
         let text = "//! A module.\n\n/// An item.\nfn f() {\n    // Nothing.\n    g(); // It.\n}\n";
         let rest = "\nfn f() {\n    g(); // It.\n}\n";
         assert_eq!(without_comments(text), rest);
     }
 
     #[test]
-    fn sources_have_one_hash() {
+    fn the_source_hash_is_deterministic() {
         let once = generator().expect("the sources");
         assert_eq!(once, generator().expect("the sources"));
         assert_ne!(once, hash(""));

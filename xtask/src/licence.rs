@@ -75,7 +75,7 @@ mod tests {
     use super::is_permitted;
 
     #[test]
-    fn expressions_are_read_as_they_are_written() {
+    fn spdx_expressions_are_evaluated() {
         for good in [
             "MIT",
             "MIT/Apache-2.0",

@@ -252,7 +252,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     #[test]
-    fn every_link_of_the_repository_leads_somewhere() {
+    fn all_links_of_the_repository_are_valid() {
         let texts = texts().expect("the texts");
         assert!(texts.len() > 20, "{:?}", texts.keys());
         assert_eq!(broken(&texts), Vec::<String>::new());
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn the_gallery_has_every_robot() {
+    fn the_gallery_links_every_robot() {
         let text = read("docs/gallery.md").expect("the gallery");
         for stem in stems("robots", "toml").expect("the robots") {
             for link in [
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn what_leads_nowhere_is_named() {
+    fn broken_links_are_reported() {
         let texts = |text: &str| BTreeMap::from([("docs/a.md".to_owned(), text.to_owned())]);
         assert_eq!(
             broken(&texts("# A\n[x](#a) [y](../README.md) [z](https://b.c)")),
@@ -321,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn pages_of_packages_link_by_address() {
+    fn package_pages_must_link_by_absolute_address() {
         let broken = |link: &str| {
             let text = format!("# A\n[x]({link})");
             broken(&BTreeMap::from([("core/README.md".to_owned(), text)]))

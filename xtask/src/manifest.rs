@@ -116,7 +116,7 @@ mod tests {
     const CODE: &str = "impl A {\n    pub fn one(x: f64) -> f64 {\n        x\n    }\n    #[must_use]\n    pub fn two(x: f64) -> f64 {\n        if x {\n        }\n    }\n}\n";
 
     #[test]
-    fn functions_are_cut_out_of_their_module() {
+    fn functions_are_extracted_from_their_module() {
         assert_eq!(
             function(CODE, "one"),
             "\n    pub fn one(x: f64) -> f64 {\n        x"
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn a_changed_function_changes_its_line_alone() {
+    fn a_changed_function_changes_only_its_manifest_line() {
         let cost = Cost {
             additions: 3,
             arc_tangents: 1,

@@ -66,7 +66,7 @@ mod tests {
     use crate::metadata::{Package, Page, packages};
 
     #[test]
-    fn keywords_are_short_words() {
+    fn registry_keywords_are_validated() {
         for good in ["robotics", "no-std", "3d", "c++"] {
             assert!(is_keyword(good), "{good}");
         }
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn every_fault_of_a_page_is_named() {
+    fn all_faults_of_a_registry_page_are_reported() {
         let mut package = Package::named("one");
         assert_eq!(faults(&package), [""; 0]);
         package.page = Page {
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn packages_of_this_repository_have_sound_pages() {
+    fn published_packages_have_valid_registry_pages() {
         let packages = packages().expect("the packages");
         let published = packages.iter().filter(|p| p.is_member && p.is_published);
         let found: Vec<String> = published.flat_map(faults).collect();

@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn sound_packages_have_no_problem() {
+    fn consistent_packages_have_no_problem() {
         let upper = Package {
             siblings: vec![("lower".to_owned(), "^1.2.0".to_owned())],
             ..package("upper")
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn every_problem_is_named() {
+    fn all_release_problems_are_reported() {
         let old = Package {
             version: "1.1.0".to_owned(),
             description: None,

@@ -25,7 +25,7 @@ fn actions_are_pinned_by_commit() {
 }
 
 #[test]
-fn workflows_may_only_read_unless_a_job_says_more() {
+fn workflows_have_read_permission_by_default() {
     for (path, text) in workflows() {
         assert!(
             text.contains("\npermissions:\n  contents: read\njobs:\n"),
@@ -53,7 +53,7 @@ fn jobs(text: &str) -> Vec<(&str, String)> {
 }
 
 #[test]
-fn jobs_that_publish_wait_for_the_guard() {
+fn publishing_jobs_depend_on_the_guard() {
     let text = read(".github/workflows/release.yml").expect("the workflow");
     let jobs = jobs(&text);
     let publishes = |job: &str| job.contains("secrets.") || job.contains(": write");
@@ -83,7 +83,7 @@ fn jobs_that_publish_wait_for_the_guard() {
 }
 
 #[test]
-fn scripts_read_names_from_variables() {
+fn scripts_contain_no_template_expressions() {
     for (path, text) in workflows() {
         for line in text.lines().filter(|line| line.contains("${{")) {
             let is_script = line

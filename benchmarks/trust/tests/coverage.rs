@@ -30,7 +30,7 @@ fn cells(robot: &str, draws: u64, part: f64) -> Vec<Cell> {
 }
 
 #[test]
-fn intervals_contain_the_truth_as_often_as_they_say() {
+fn intervals_have_their_nominal_coverage() {
     if !is_full() {
         return;
     }

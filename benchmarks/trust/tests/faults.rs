@@ -41,7 +41,7 @@ fn of_robot(name: &str, words: &[&str]) -> Vec<FaultRow> {
 }
 
 #[test]
-fn usable_parameters_are_right_on_average_whatever_the_fault() {
+fn usable_parameters_have_small_mean_errors_under_every_fault() {
     let count = if is_full() { CASES.len() } else { 1 };
     for (robot, words) in &CASES[..count] {
         let rows = of_robot(robot, words);
@@ -54,7 +54,7 @@ fn usable_parameters_are_right_on_average_whatever_the_fault() {
 }
 
 #[test]
-fn data_without_a_fault_are_used() {
+fn faultless_data_are_accepted() {
     for robot in by_tiers([
         &["five_bar"][..],
         &["five_bar", "dualv"],

@@ -27,7 +27,7 @@ const MISSED: [(&str, f64); 1] = [("encoders of 12 bits", 3.1)];
 const PART: f64 = 0.25;
 
 #[test]
-fn every_trap_of_the_dualv_is_refused_named_or_an_assumption() {
+fn every_dualv_trap_is_refused_reported_or_a_listed_assumption() {
     if !is_full() {
         return;
     }
@@ -45,12 +45,15 @@ fn every_trap_of_the_dualv_is_refused_named_or_an_assumption() {
             own = prepared(&plant, &plant.experiment).expect("records");
         }
         (trap.alter)(&mut own);
-        let told = outcome(&subject, &trap, own, &faultless);
-        let used = told.grade == Some(Grade::Use);
-        assert_eq!(used, USED.contains(&trap.name.as_str()), "{told:?}");
+        let result = outcome(&subject, &trap, own, &faultless);
+        let used = result.grade == Some(Grade::Use);
+        assert_eq!(used, USED.contains(&trap.name.as_str()), "{result:?}");
         let known = MISSED.iter().find(|(name, _)| *name == trap.name);
-        let error = told.worst_listed.as_ref().map_or(0.0, |(size, _)| *size);
+        let error = result.worst_listed.as_ref().map_or(0.0, |(size, _)| *size);
         let is_known = known.is_some_and(|(_, most)| error < *most);
-        assert!(is_known || told.standing() != Standing::Missed, "{told:?}");
+        assert!(
+            is_known || result.standing() != Standing::Missed,
+            "{result:?}"
+        );
     }
 }

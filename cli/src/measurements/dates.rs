@@ -75,7 +75,7 @@ mod tests {
     use super::{date, instant};
 
     #[test]
-    fn days_are_those_of_their_instants() {
+    fn days_survive_conversion_to_instants_and_back() {
         for day in [
             "1970-01-01",
             "2000-02-29",
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn instants_are_counted_from_1970() {
+    fn instants_are_microseconds_since_1970() {
         assert_eq!(instant("1970-01-01").ok(), Some(0));
         // date -u -d 2026-03-02T14:05:00 +%s
         assert_eq!(

@@ -85,7 +85,7 @@ mod tests {
     use std::{fs, path::Path};
 
     #[test]
-    fn a_log_is_given_once_under_whatever_name() -> std::io::Result<()> {
+    fn a_log_given_twice_under_different_names_is_rejected() -> std::io::Result<()> {
         let folder = tempfile::tempdir()?;
         let at = |name: &str| folder.path().join(name);
         for (name, text) in [
@@ -96,12 +96,12 @@ mod tests {
             fs::write(at(name), text)?;
         }
         let [a, b, c, none] = ["a.csv", "b.csv", "c.csv", "none.csv"].map(at);
-        let said = |logs: &[&Path], estimated| match check(logs, estimated) {
+        let check_message = |logs: &[&Path], estimated| match check(logs, estimated) {
             Ok(()) => String::new(),
             Err(failure) => failure.render(false),
         };
-        assert_eq!(said(&[&a, &b, &none, &none], 1), "");
-        let twice = said(&[&a, &b, &a, &c], 4);
+        assert_eq!(check_message(&[&a, &b, &none, &none], 1), "");
+        let twice = check_message(&[&a, &b, &a, &c], 4);
         assert_eq!(
             twice.matches("its samples would count twice").count(),
             2,
@@ -111,17 +111,19 @@ mod tests {
             twice.contains("c.csv") && twice.contains("give each log once"),
             "{twice}"
         );
-        let validated = said(&[&a, &c], 1);
+        let validated = check_message(&[&a, &c], 1);
         assert!(
             validated.contains("from which the parameters are estimated"),
             "{validated}"
         );
-        assert!(said(&[&a, &b, &b], 1).contains("count twice"));
+        assert!(check_message(&[&a, &b, &b], 1).contains("count twice"));
         // Ranges of one log are different runs unless they overlap.
         let [start, end, middle] = ["a.csv[:1]", "a.csv[1:]", "a.csv[0.5:1.5]"].map(at);
-        assert_eq!(said(&[&start, &end], 1), "");
-        assert!(said(&[&end, &middle], 2).contains("count twice"));
-        assert!(said(&[&a, &middle], 1).contains("from which the parameters are estimated"));
+        assert_eq!(check_message(&[&start, &end], 1), "");
+        assert!(check_message(&[&end, &middle], 2).contains("count twice"));
+        assert!(
+            check_message(&[&a, &middle], 1).contains("from which the parameters are estimated")
+        );
         Ok(())
     }
 }

@@ -257,7 +257,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn an_error_leaves_all_files_as_they_were() -> std::io::Result<()> {
+    fn a_write_error_leaves_all_files_unchanged() -> std::io::Result<()> {
         let folder = tempfile::tempdir()?;
         let (good, bad) = (
             folder.path().join("a.csv"),
@@ -274,7 +274,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn all_paths_to_one_file_are_recognised() -> std::io::Result<()> {
+    fn links_to_the_same_file_are_recognised() -> std::io::Result<()> {
         use std::os::unix::fs::symlink;
         let folder = tempfile::tempdir()?;
         let at = |name: &str| folder.path().join(name);

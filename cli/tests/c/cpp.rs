@@ -103,9 +103,9 @@ fn check(name: &str, functions: &[&str], float: Float) -> Result<(), Failure> {
         fs::write(at.join(format!("{stem}.hpp")), &header)?;
         fs::write(at.join("main.cpp"), program(&robot, stem, &states, number))?;
         let run = |command: &mut Command| -> Result<(), Failure> {
-            let said = command.current_dir(&at).output()?;
-            let text = String::from_utf8_lossy(&said.stderr).into_owned();
-            assert!(said.status.success(), "{name}, {}:\n{text}", compiler.0);
+            let finished = command.current_dir(&at).output()?;
+            let text = String::from_utf8_lossy(&finished.stderr).into_owned();
+            assert!(finished.status.success(), "{name}, {}:\n{text}", compiler.0);
             Ok(())
         };
         let source = format!("{stem}.c");
@@ -120,7 +120,7 @@ fn check(name: &str, functions: &[&str], float: Float) -> Result<(), Failure> {
 }
 
 #[test]
-fn the_header_for_cpp_calls_the_functions_of_c() -> Result<(), Failure> {
+fn the_cpp_header_gives_the_results_of_the_c_functions() -> Result<(), Failure> {
     let robots = by_tier([
         &["five_bar"][..],
         &["ankle", "emps", "five_bar", "hexapod", "rx90"],

@@ -106,10 +106,10 @@ impl Driver {
         command
             .arg(&program)
             .args(["driver.c", &format!("{stem}.c"), "-lm"]);
-        let said = command.output()?;
-        if !said.status.success() {
-            let said = String::from_utf8_lossy(&said.stderr).into_owned();
-            return Err(format!("{} refuses {stem}.c:\n{said}", compiler.0).into());
+        let printed = command.output()?;
+        if !printed.status.success() {
+            let printed = String::from_utf8_lossy(&printed.stderr).into_owned();
+            return Err(format!("{} refuses {stem}.c:\n{printed}", compiler.0).into());
         }
         Ok(Self {
             program,
@@ -120,9 +120,9 @@ impl Driver {
 
     /// Texts of all errors, by their numbers.
     pub(crate) fn texts(&self) -> Result<Vec<String>, Failure> {
-        let said = Command::new(&self.program).arg("texts").output()?;
-        let said = String::from_utf8(said.stdout)?;
-        Ok(said.lines().map(str::to_owned).collect())
+        let printed = Command::new(&self.program).arg("texts").output()?;
+        let printed = String::from_utf8(printed.stdout)?;
+        Ok(printed.lines().map(str::to_owned).collect())
     }
 
     /// Error and output of each call.
@@ -138,13 +138,13 @@ impl Driver {
         }
         let file = self.folder.join("questions");
         fs::write(&file, bytes)?;
-        let said = Command::new(&self.program)
+        let printed = Command::new(&self.program)
             .stdin(File::open(&file)?)
             .output()?;
-        if !said.status.success() {
-            return Err(format!("the driver failed: {:?}", said.status).into());
+        if !printed.status.success() {
+            return Err(format!("the driver failed: {:?}", printed.status).into());
         }
-        let (numbers, rest) = said.stdout.as_chunks::<8>();
+        let (numbers, rest) = printed.stdout.as_chunks::<8>();
         assert!(rest.is_empty());
         let mut numbers = numbers.iter().map(|bytes| f64::from_ne_bytes(*bytes));
         let mut answers = Vec::new();

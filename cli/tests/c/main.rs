@@ -36,7 +36,7 @@ const TOLERANCE: f64 = 1e-13;
 ///
 /// They include forward kinematics with and without a quaternion, the actuator projection, and
 /// functions from each kind of input.
-const FEW: [(&str, &[&str]); 4] = [
+const DEFAULT_TIER_ROBOTS: [(&str, &[&str]); 4] = [
     (
         "dualv",
         &[
@@ -85,7 +85,7 @@ fn folder(name: &str) -> PathBuf {
 }
 
 /// Results of a robot.
-struct Seen {
+struct ComparisonCounts {
     /// Largest relative difference, and its function.
     worst: (f64, String),
     /// Number of compared outputs.
@@ -103,7 +103,7 @@ fn compare(
     model: RobotModel,
     count: usize,
     compilers: Vec<Compiler>,
-) -> Result<Option<Seen>, Failure> {
+) -> Result<Option<ComparisonCounts>, Failure> {
     let files = c::files(&model, &format!("{name}.toml"));
     let robot = InterpretedRobot::new(model);
     let near = states(&robot, count, 11);
@@ -129,7 +129,7 @@ fn compare(
         calls.push((partition::call(&robot), Vec::new()));
         calls.len() - 1
     });
-    let mut seen = None;
+    let mut counts = None;
     for compiler in compilers {
         let own: Vec<_> = calls.iter().map(|(call, _)| call.clone()).collect();
         let driver = Driver::build(
@@ -140,7 +140,7 @@ fn compare(
             Float::F64,
         )?;
         let texts = driver.texts()?;
-        let mut new = Seen {
+        let mut new = ComparisonCounts {
             worst: (0.0, String::new()),
             values: 0,
             sensitive: (0, 0.0, String::new()),
@@ -224,9 +224,9 @@ fn compare(
             &extremes,
             extreme::Errors::Compared,
         )?;
-        seen = Some(new);
+        counts = Some(new);
     }
-    Ok(seen)
+    Ok(counts)
 }
 
 /// Effect of a rounding of the inputs on a function's output, relative to its largest number.
@@ -323,52 +323,53 @@ fn stems() -> Result<Vec<String>, Failure> {
 /// Robots of the tier with the functions to compare; none means all.
 fn robots() -> Result<Vec<(String, &'static [&'static str])>, Failure> {
     let all: &[&str] = &[];
-    let few = FEW.map(|(stem, functions)| (stem.to_owned(), by_tier([functions, all])));
+    let few =
+        DEFAULT_TIER_ROBOTS.map(|(stem, functions)| (stem.to_owned(), by_tier([functions, all])));
     let others = of_many(stems()?).into_iter();
-    let others = others.filter(|stem| FEW.iter().all(|(few, _)| few != stem));
+    let others = others.filter(|stem| DEFAULT_TIER_ROBOTS.iter().all(|(few, _)| few != stem));
     let others = others.map(|stem| (stem, all));
     Ok(few.into_iter().chain(others).collect())
 }
 
 #[test]
-fn robots_of_the_library_agree() -> Result<(), Failure> {
+fn c_agrees_with_the_interpreter_for_library_robots() -> Result<(), Failure> {
     for (index, (stem, functions)) in robots()?.into_iter().enumerate() {
         // Both compilers for some robots, one without optimisation for each of the others.
         let mut compilers = Compiler::all();
-        if FEW.iter().all(|(few, _)| *few != stem) && !compilers.is_empty() {
+        if DEFAULT_TIER_ROBOTS.iter().all(|(few, _)| *few != stem) && !compilers.is_empty() {
             compilers = vec![compilers.swap_remove(index % compilers.len()).unoptimised()];
         }
         let path = repository(&format!("robots/{stem}.toml"));
         let model = model(&path, Effort::None, functions, Float::F64)?;
-        let seen = compare(&stem, model, by_tier([20, 100]), compilers)?;
-        assert!(seen.is_none_or(|seen| seen.values > 0));
+        let counts = compare(&stem, model, by_tier([20, 100]), compilers)?;
+        assert!(counts.is_none_or(|counts| counts.values > 0));
     }
     Ok(())
 }
 
 /// Springs and known torques of passive joints take arc tangents.
 #[test]
-fn a_robot_with_springs_agrees() -> Result<(), Failure> {
+fn c_agrees_for_springs_on_passive_joints() -> Result<(), Failure> {
     let path = repository("tests/compiled/friction/spring_bar.toml");
     let model = model(&path, Effort::Quick, &[], Float::F64)?;
-    let seen = compare("spring_bar", model, by_tier([20, 100]), Compiler::all())?;
-    assert!(seen.is_none_or(|seen| seen.values > 0));
+    let counts = compare("spring_bar", model, by_tier([20, 100]), Compiler::all())?;
+    assert!(counts.is_none_or(|counts| counts.values > 0));
     Ok(())
 }
 
 /// Motors of several joints, more than degrees of freedom.
 #[test]
-fn a_robot_with_coupled_motors_agrees() -> Result<(), Failure> {
+fn c_agrees_for_coupled_motors() -> Result<(), Failure> {
     let path = repository("tests/compiled/friction/motor_bar.toml");
     let model = model(&path, Effort::Quick, &[], Float::F64)?;
-    let seen = compare("motor_bar", model, by_tier([20, 100]), Compiler::all())?;
-    assert!(seen.is_none_or(|seen| seen.values > 0));
+    let counts = compare("motor_bar", model, by_tier([20, 100]), Compiler::all())?;
+    assert!(counts.is_none_or(|counts| counts.values > 0));
     Ok(())
 }
 
 /// Functions of frames and of all masses, of robots of several kinds.
 #[test]
-fn functions_of_frames_agree() -> Result<(), Failure> {
+fn c_agrees_for_frame_functions() -> Result<(), Failure> {
     const FUNCTIONS: [&str; 15] = [
         "tool_pose",
         "tool_jacobian",
@@ -397,8 +398,8 @@ fn functions_of_frames_agree() -> Result<(), Failure> {
             let model = model(&path, Effort::None, &FUNCTIONS, float)?;
             match float {
                 Float::F64 => {
-                    let seen = compare(&name, model, by_tier([20, 100]), Compiler::all())?;
-                    assert!(seen.is_none_or(|seen| seen.values > 0));
+                    let counts = compare(&name, model, by_tier([20, 100]), Compiler::all())?;
+                    assert!(counts.is_none_or(|counts| counts.values > 0));
                 }
                 Float::F32 => {
                     let path = path.to_string_lossy();
@@ -412,7 +413,7 @@ fn functions_of_frames_agree() -> Result<(), Failure> {
 
 /// Derivatives of the dynamics of a tree and of a redundant robot.
 #[test]
-fn derivatives_of_the_dynamics_agree() -> Result<(), Failure> {
+fn c_agrees_for_dynamics_derivatives() -> Result<(), Failure> {
     const FUNCTIONS: [&str; 4] = [
         "inverse_dynamics_by_displacement",
         "inverse_dynamics_by_twist",
@@ -423,8 +424,8 @@ fn derivatives_of_the_dynamics_agree() -> Result<(), Failure> {
         let path = repository(&format!("robots/{stem}.toml"));
         let name = format!("derived_{stem}");
         let model = model(&path, Effort::None, &FUNCTIONS, Float::F64)?;
-        let seen = compare(&name, model, by_tier([20, 100]), Compiler::all())?;
-        assert!(seen.is_none_or(|seen| seen.values > 0));
+        let counts = compare(&name, model, by_tier([20, 100]), Compiler::all())?;
+        assert!(counts.is_none_or(|counts| counts.values > 0));
         let path = path.to_string_lossy();
         single::compare(&name, &FUNCTIONS, &path, by_tier([20, 100]))?;
     }
@@ -433,14 +434,14 @@ fn derivatives_of_the_dynamics_agree() -> Result<(), Failure> {
 
 /// No robot of the library needs Newton's method for its joints.
 #[test]
-fn robots_that_iterate_agree() -> Result<(), Failure> {
+fn c_agrees_for_joints_solved_by_newtons_method() -> Result<(), Failure> {
     let names = by_tier([&["newton_point"][..], &["newton_point", "newton_spatial"]]);
     for name in names {
         let path = repository(&format!("cli/tests/c/{name}.toml"));
         let model = model(&path, Effort::None, &[], Float::F64)?;
-        let seen = compare(name, model, by_tier([20, 100]), Compiler::all())?;
-        if let Some(seen) = seen {
-            assert!(!seen.errors.is_empty());
+        let counts = compare(name, model, by_tier([20, 100]), Compiler::all())?;
+        if let Some(counts) = counts {
+            assert!(!counts.errors.is_empty());
         }
     }
     Ok(())

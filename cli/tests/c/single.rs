@@ -20,7 +20,7 @@ const ROUNDINGS: f64 = 60.0;
 /// Fraction of the outputs that may differ by more, near singularities of intermediate systems.
 ///
 /// The largest count is 70 of 9600, for the Exechon-like head.
-const BEYOND: f64 = 0.01;
+const LARGEST_FRACTION_BEYOND: f64 = 0.01;
 
 /// Robots of the full tier: chains and trees, legs with and without redundancy, skeletons with
 /// loops, and a platform with parasitic motion.
@@ -114,7 +114,7 @@ pub(crate) fn compare(
         sensitive.2
     );
     assert!(
-        beyond as f64 <= BEYOND * questions.len() as f64,
+        beyond as f64 <= LARGEST_FRACTION_BEYOND * questions.len() as f64,
         "{name}: {beyond} by more than {ROUNDINGS} roundings, {}",
         sensitive.2
     );
@@ -122,7 +122,7 @@ pub(crate) fn compare(
 }
 
 #[test]
-fn numbers_of_32_bits_give_what_they_can_hold() -> Result<(), Failure> {
+fn single_precision_c_agrees_within_rounding() -> Result<(), Failure> {
     let all = robots()?.into_iter();
     for (stem, functions) in all.filter(|(stem, _)| !is_full() || ROBOTS.contains(&&**stem)) {
         compare(

@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_placeholder_cancels_from_is_written_without_it() {
+    fn cancelled_placeholders_vanish_from_expressions() {
         let arena = Arena::new();
         let (q, a) = (arena.placeholder("q"), arena.variable("a"));
         let hidden = (q + a).squared() - q.squared() - q * a * arena.integer(2);

@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn divisors_are_found_wherever_they_stand() {
+    fn divisors_are_found_at_every_depth() {
         let arena = Arena::new();
         let [a, b, c, d] = ["a", "b", "c", "d"].map(|name| arena.input(name, 0));
         let inner = a / (b + c);

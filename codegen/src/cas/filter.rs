@@ -50,7 +50,7 @@ mod tests {
     use super::{Element, Filter};
 
     #[test]
-    fn a_filter_holds_its_values_and_few_others() {
+    fn the_filter_contains_its_values_and_few_others() {
         let all: Vec<Element> = (0..20_000).map(|k| Element::integer(k * k + 7)).collect();
         let filter = Filter::new(all[..10_000].iter(), 10_000);
         let held = |part: &[Element]| part.iter().filter(|one| filter.may_hold(one)).count();

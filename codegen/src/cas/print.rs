@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn identities_vanish_at_construction() {
+    fn identities_are_simplified_at_construction() {
         let arena = Arena::new();
         let (a, b) = (arena.angle("a"), arena.angle("b"));
         let sum = a.plus(&b).unwrap();
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn unequal_expressions_stay_apart() {
+    fn unequal_expressions_are_distinguished() {
         let arena = Arena::new();
         let (x, y) = (arena.variable("x"), arena.variable("y"));
         assert_ne!(x * y, x + y);

@@ -156,7 +156,7 @@ mod tests {
     use overact_core::{Columns, Function};
 
     #[test]
-    fn names_of_functions_and_groups_are_known() {
+    fn function_and_group_names_are_accepted() {
         let names = [
             "control",
             "inverse_dynamics",
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn all_unknown_names_are_told_with_what_was_meant() {
+    fn all_unknown_names_are_reported_with_suggestions() {
         let unknown = Choice::new(["inverse_dynamic", "joints", "nonsense", ""]).expect_err("two");
         let suggestions: Vec<(usize, &str)> =
             unknown.iter().map(|u| (u.index, u.help.as_str())).collect();
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn forms_are_chosen_by_what_they_are_evaluated_from_and_by_their_columns() {
+    fn forms_are_selected_by_motion_input_and_columns() {
         let idm = named("idm_red_platform");
         let forms = |choice: Choice| generated("five_bar", &choice).expect("a model");
         let joints = idm.clone().evaluated_from([MotionInput::Joints]);
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn forms_that_are_not_there_are_told_with_a_way_out() {
+    fn unavailable_forms_are_reported_with_alternatives() {
         let cases = [
             (
                 named("mass_matrix").evaluated_from([MotionInput::Joints]),
@@ -277,8 +277,11 @@ mod tests {
             ),
         ];
         for (choice, wanted) in cases {
-            let said = generated("five_bar", &choice).expect_err("nothing of this form");
-            assert!(wanted.iter().all(|part| said.contains(part)), "{said}");
+            let message = generated("five_bar", &choice).expect_err("nothing of this form");
+            assert!(
+                wanted.iter().all(|part| message.contains(part)),
+                "{message}"
+            );
         }
     }
 }

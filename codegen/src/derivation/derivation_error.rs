@@ -169,7 +169,7 @@ mod tests {
     use overact_description::diagnostic::Source;
 
     #[test]
-    fn an_internal_error_names_robot_version_and_pass_and_asks_for_a_report() {
+    fn internal_errors_state_robot_version_and_pass() {
         let toml = include_str!("../../../robots/emps.toml");
         let source = Source::new("emps.toml", toml);
         let description = overact_description::parse(&source).expect("a robot");

@@ -66,7 +66,7 @@ mod tests {
     use super::rounded_magnitude;
 
     #[test]
-    fn magnitudes_have_four_digits() {
+    fn magnitudes_are_rounded_to_four_digits() {
         let cases = [
             (0.0, 0.0),
             (0.156_064_759_329_289_5, 0.1561),

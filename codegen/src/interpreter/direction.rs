@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_have_their_angles_to_the_last_digit() {
+    fn atan2_is_exact_on_axes_and_diagonals() {
         let y = [0.0, 1.0, 0.0, -1.0, 2.0, -2.0, -0.0, -0.0];
         let x = [1.0, 0.0, -1.0, 0.0, 2.0, -2.0, 1.0, -1.0];
         for (lane, found) in angles::<8, false>(y, x).into_iter().enumerate() {
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_direction_or_is_no_number_is_left_to_the_library() {
+    fn degenerate_directions_are_left_to_the_library() {
         assert!(are_usual(&[0.0, -1.0], &[1e-100, 0.0]));
         for (y, x) in [
             (0.0, 0.0),

@@ -105,7 +105,7 @@ fn rows(values: &[f64], shared: bool) -> Rows<'_> {
 }
 
 #[test]
-fn blocks_give_what_single_samples_give() {
+fn blocks_and_single_samples_give_equal_results() {
     let program = program();
     let width = program.entries.len();
     let mut evaluator = Evaluator::new(&program);
@@ -129,7 +129,7 @@ fn blocks_give_what_single_samples_give() {
 }
 
 #[test]
-fn a_program_made_ready_gives_what_it_gives_once() {
+fn prepared_programs_give_the_results_of_unprepared_ones() {
     let program = program();
     let width = program.entries.len();
     let mut evaluator = Evaluator::new(&program);
@@ -150,7 +150,7 @@ fn a_program_made_ready_gives_what_it_gives_once() {
 }
 
 #[test]
-fn one_large_angle_of_a_block_is_the_library_s() {
+fn large_angles_in_a_block_are_evaluated_by_the_library() {
     let program = program();
     let width = program.entries.len();
     for large in [1e300, -2e5, f64::INFINITY, f64::NAN] {
@@ -168,7 +168,7 @@ fn one_large_angle_of_a_block_is_the_library_s() {
 }
 
 #[test]
-fn numbers_are_handed_out_once_each_and_are_those_of_rows() {
+fn streamed_numbers_occur_once_and_equal_the_rows() {
     let program = program();
     let width = program.entries.len();
     let mut evaluator = Evaluator::new(&program);
@@ -196,7 +196,7 @@ fn numbers_are_handed_out_once_each_and_are_those_of_rows() {
 }
 
 #[test]
-fn the_first_sample_that_fails_is_named() {
+fn the_first_failing_sample_is_reported() {
     let program = program();
     let mut states = states(2 * BLOCK + 3);
     for sample in [BLOCK + 5, BLOCK + 9] {

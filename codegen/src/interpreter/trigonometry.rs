@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn large_angles_and_those_that_are_no_numbers_are_left_to_the_library() {
+    fn large_and_non_finite_angles_are_left_to_the_library() {
         assert!(are_small(&[0.0, -LARGEST, LARGEST]));
         for angle in [1e300, f64::NAN, f64::INFINITY, -2.0 * LARGEST] {
             assert!(!are_small(&[0.5, angle]), "{angle}");

@@ -158,7 +158,7 @@ mod tests {
     use super::VertexCut;
 
     #[test]
-    fn the_narrowest_place_is_found() {
+    fn the_smallest_vertex_cut_is_found() {
         // Three sources meet in two vertices, which four sinks follow.
         let mut cut = VertexCut::new(9);
         (0..3).for_each(|v| cut.source(v));
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn of_equal_cuts_the_one_near_the_sinks_is_taken() {
+    fn the_minimum_cut_nearest_to_the_sinks_is_chosen() {
         let mut cut = VertexCut::new(3);
         cut.source(0);
         cut.sink(2);
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn flow_is_sent_back_where_a_first_path_blocks_others() {
+    fn augmenting_paths_may_reverse_flow() {
         let mut cut = VertexCut::new(6);
         cut.source(0);
         cut.source(1);

@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn factors_are_those_of_the_matrix() {
+    fn factors_reconstruct_pseudo_inverse_and_null_space() {
         let mut stream = Stream::new(5);
         for (rows, columns) in [(1, 1), (3, 3), (6, 6), (6, 3), (3, 6), (2, 5), (8, 6)] {
             for _ in 0..200 {
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn nearly_equal_singular_values_are_no_obstacle() {
+    fn nearly_equal_singular_values_are_decomposed_accurately() {
         let mut stream = Stream::new(6);
         for _ in 0..2000 {
             // A rotation with a small disturbance, like the Jacobian of a leg with crossing axes.
@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn rank_and_condition_of_matrices_that_lack_some() {
+    fn rank_and_condition_of_rank_deficient_matrices_are_right() {
         let matrix = DMatrix::from_row_slice(3, 3, &[1., 2., 3., 2., 4., 6., 1., 0., 1.]);
         let found = SingularValues::new(&matrix).unwrap();
         assert_eq!(found.rank(1e-12), 2);

@@ -167,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_geometric_constant_is_recognised() {
+    fn simple_ratios_are_recognised() {
         let ratio = nearby_ratio(0.11 * 0.11 / 0.28).unwrap();
         assert_eq!((ratio.numerator(), ratio.denominator()), (121, 2800));
         assert_eq!(nearby_ratio(-0.28).unwrap().to_string(), "-7/25");

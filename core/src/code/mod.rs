@@ -115,7 +115,7 @@ mod tests {
     use std::{format, string::ToString, vec::Vec};
 
     #[test]
-    fn every_code_is_explained_once_in_the_order_of_its_area() {
+    fn error_codes_are_unique_ordered_and_explained() {
         let numbers: Vec<u16> = Code::all().map(|one| one.code.0).collect();
         assert!(
             numbers.windows(2).all(|pair| pair[0] < pair[1]),
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn codes_are_found_by_what_they_are_called() {
+    fn error_codes_are_parsed_from_their_names() {
         for one in Code::all() {
             let name = one.code.to_string();
             assert_eq!(Code::named(&name), Some(one.code));

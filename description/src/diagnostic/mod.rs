@@ -296,22 +296,22 @@ mod tests {
     }
 
     #[test]
-    fn values_beyond_reading_are_cut_in_the_middle() {
-        let said = |value: &str| {
+    fn long_values_are_shortened_in_the_middle() {
+        let diagnostic_of = |value: &str| {
             Diagnostic::global(Code::UNKNOWN_KEY, format!("there is no `{value}` here"))
         };
         let value = "é".repeat(100_000);
-        let both = said(&value).help(value).label("short");
+        let both = diagnostic_of(&value).help(value).label("short");
         for text in [&both.message, both.help.as_ref().expect("a help")] {
             assert_eq!(text.chars().count(), LONGEST_MESSAGE + 1);
         }
         assert!(both.message.starts_with("there is no `é") && both.message.ends_with("é` here"));
-        assert_eq!(said("x").message, "there is no `x` here");
+        assert_eq!(diagnostic_of("x").message, "there is no `x` here");
         assert_eq!(both.label, "short");
     }
 
     #[test]
-    fn errors_are_sorted_and_kept_once() {
+    fn errors_are_sorted_and_deduplicated() {
         let mut all = Diagnostics::new();
         assert!(all.clone().into_result(()).is_ok());
         all.push(Diagnostic::new(Code::SYNTAX, "second", 5..6));

@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn plain_text_shows_the_place() {
+    fn plain_text_shows_the_source_location() {
         let (source, errors) = example();
         let expected = "\
 error[OA102]: unknown key `gammma`
@@ -160,39 +160,39 @@ error[OA102]: unknown key `gammma`
     }
 
     #[test]
-    fn names_of_files_have_no_control_characters_in_messages() {
+    fn control_characters_of_file_names_are_not_printed() {
         let source = Source::new("a\u{1b}[31m.toml", "name = \"A\"");
         let located = Diagnostic::new(Code::UNKNOWN_KEY, "unknown", 0..4);
         for error in [located, Diagnostic::global(Code::UNKNOWN_KEY, "unknown")] {
-            let said = Diagnostics::from(error).render_plain(&source);
+            let message = Diagnostics::from(error).render_plain(&source);
             assert!(
-                !said.contains('\u{1b}') && said.contains("[31m.toml"),
-                "{said}"
+                !message.contains('\u{1b}') && message.contains("[31m.toml"),
+                "{message}"
             );
         }
     }
 
     #[test]
-    fn what_a_file_says_cannot_turn_the_direction_of_an_error() {
+    fn invisible_characters_of_a_file_are_not_printed() {
         let source = Source::new("a.toml", "name = \"A\"");
         let errors: Diagnostics =
             Diagnostic::new(Code::UNKNOWN_KEY, "no actuator `\u{202e}a`", 0..4)
                 .label("not \u{1b}[31mred")
                 .help("the actuators are \u{2066}b, c\u{200b}")
                 .into();
-        let said = errors.render_plain(&source);
+        let message = errors.render_plain(&source);
         assert!(
-            !said.chars().any(|c| c != '\n' && is_invisible(c)),
-            "{said:?}"
+            !message.chars().any(|c| c != '\n' && is_invisible(c)),
+            "{message:?}"
         );
         assert!(
-            said.contains("the actuators are \u{fffd}b, c\u{fffd}"),
-            "{said}"
+            message.contains("the actuators are \u{fffd}b, c\u{fffd}"),
+            "{message}"
         );
     }
 
     #[test]
-    fn an_error_that_is_everywhere_is_shown_once() {
+    fn repeated_errors_are_shown_once() {
         let source = Source::new("a.toml", "x\n".repeat(20));
         let mut errors = Diagnostics::new();
         for line in 0..14 {
@@ -211,7 +211,7 @@ error[OA102]: unknown key `gammma`
     }
 
     #[test]
-    fn data_has_line_and_column() {
+    fn located_errors_have_line_and_column() {
         let (source, errors) = example();
         let located = errors.located(&source);
         assert_eq!(located.len(), 1);
@@ -220,7 +220,7 @@ error[OA102]: unknown key `gammma`
     }
 
     #[test]
-    fn places_outside_the_text_do_no_harm() {
+    fn spans_outside_the_text_are_rendered() {
         let source = Source::new("a.toml", "ä");
         for span in [0..1, 1..1, 1..9, 7..9, Span { start: 2, end: 1 }] {
             let errors = Diagnostics::from(Diagnostic::new(Code::UNKNOWN_KEY, "wrong", span));

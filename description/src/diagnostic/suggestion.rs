@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn near_names_are_found() {
+    fn similar_names_are_suggested() {
         let names = ["gamma", "alpha", "theta", "b", "d", "r"];
         assert_eq!(nearest("alhpa", names), Some("alpha"));
         assert_eq!(nearest("Theta", names), Some("theta"));
@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn distances() {
+    fn transpositions_count_as_one_edit() {
         assert_eq!(distance("", "abc"), 3);
         assert_eq!(distance("abc", "acb"), 1);
         assert_eq!(distance("kitten", "sitting"), 3);

@@ -109,7 +109,7 @@ mod tests {
     use super::ActuatorNames;
 
     #[test]
-    fn every_spelling_means_the_actuator_with_the_usual_name() {
+    fn all_spellings_of_an_actuator_name_are_accepted() {
         let names = ActuatorNames::new(false, [("A", "1"), ("B", "1"), ("B", "2")]);
         assert_eq!(names.usual().collect::<Vec<_>>(), ["A", "B_1", "B_2"]);
         for (name, index) in [("A", 0), ("A.1", 0), ("A_1", 0), ("B.2", 2), ("B_2", 2)] {
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spelling_that_means_two_actuators_means_none() {
+    fn ambiguous_actuator_names_are_rejected() {
         let actuators = [("a", "b_c"), ("a", "d"), ("a_b", "c"), ("a_b", "d")];
         let names = ActuatorNames::new(false, actuators);
         let usual: Vec<&str> = names.usual().collect();

@@ -109,7 +109,7 @@ mod tests {
     use super::broken;
 
     #[test]
-    fn expressions_and_names_are_told_apart() {
+    fn malformed_column_expressions_are_distinguished_from_names() {
         for good in [
             "q_1",
             "file1.Joint_3",

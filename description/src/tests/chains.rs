@@ -38,7 +38,7 @@ shape = "rod"
 }
 
 #[test]
-fn a_chain_knows_its_bodies() {
+fn chains_are_attached_to_their_bodies() {
     let description = good(&robot("body = \"upper\"", "body = \"fore\""));
     let chain = &description.legs[1];
     let body = |leg, joint| Some(BodyIndex { leg, joint });
@@ -51,7 +51,7 @@ fn a_chain_knows_its_bodies() {
 }
 
 #[test]
-fn bodies_that_are_not_there() {
+fn unknown_skeleton_bodies_are_rejected() {
     let errors = listed(&robot("body = \"uper\"", "body = \"fore\""));
     let expected = "13:17 the skeleton `arm` has no body `uper`; did you mean `upper`?";
     assert_eq!(errors, [expected]);
@@ -74,7 +74,7 @@ fn two_rods(base: &str, end: &str) -> String {
 }
 
 #[test]
-fn chains_on_chains() {
+fn chains_on_chains_need_earlier_placement() {
     let description = good(&two_rods("body = \"rod.1\"", "body = \"rod.2\""));
     let chain = &description.legs[2];
     let body = |leg, joint| Some(BodyIndex { leg, joint });
@@ -112,7 +112,7 @@ fn with_hand(base: &str) -> String {
 }
 
 #[test]
-fn branches_on_chains() {
+fn branches_on_chains_are_attached_to_their_bodies() {
     let description = good(&with_hand("body = \"rod.2\""));
     assert_eq!(
         description.legs[2].base_body,
@@ -135,7 +135,7 @@ fn branches_on_chains() {
 }
 
 #[test]
-fn branches_in_the_wrong_place() {
+fn misplaced_branches_are_rejected() {
     let text = with_hand("body = \"rod.2\"");
     let hand = "[[place]]\nname = \"hand\"\nshape = \"hand\"\n";
     let first = text
@@ -167,7 +167,7 @@ fn branches_in_the_wrong_place() {
 
 /// With several legs, parameter names contain the leg, so a fixed joint is not recognised as payload.
 #[test]
-fn a_payload_of_a_skeleton_has_a_table() {
+fn payloads_of_skeletons_need_their_own_table() {
     let fixed = "[[leg.arm.joint]]\nname = \"payload\"\ntype = \"fixed\"\n[leg.rod]";
     let text = robot("", "body = \"fore\"")
         .replacen("[leg.rod]", fixed, 1)
@@ -186,7 +186,7 @@ fn a_payload_of_a_skeleton_has_a_table() {
 }
 
 #[test]
-fn chains_that_join_nothing() {
+fn chains_without_two_bodies_are_rejected() {
     let errors = listed(&robot("body = \"fore\"", "body = \"fore\""));
     let expected = "20:8 the chain `rod` starts from and ends on the same body; name another body in `base.body` or `end.body`: a chain connects two";
     assert_eq!(errors, [expected]);
@@ -200,7 +200,7 @@ fn chains_that_join_nothing() {
 }
 
 #[test]
-fn skeletons_in_the_wrong_place() {
+fn misplaced_skeletons_are_rejected() {
     let text = robot("", "body = \"fore\"");
     let (places, rod) = text
         .split_once("[[place]]\nname = \"rod\"")

@@ -79,14 +79,14 @@ fn first(name: &str, kind: &str, keys: &str) -> String {
 }
 
 #[test]
-fn a_universal_joint_is_two_turns() {
+fn a_universal_joint_is_two_revolute_joints() {
     let one_by_one = first("wrist_1", "revolute", &format!("{PLACED}\n{FRICTION}"))
         + &axis("wrist", "revolute", "");
     assert_eq!(made(&leg("universal", PLACED)), made(&written(&one_by_one)));
 }
 
 #[test]
-fn a_spherical_joint_is_three_turns() {
+fn a_spherical_joint_is_three_revolute_joints() {
     let one_by_one = first("wrist_1", "revolute", &format!("{PLACED}\n{FRICTION}"))
         + &axis("wrist_2", "revolute", FRICTION)
         + &axis("wrist", "revolute", "");
@@ -94,7 +94,7 @@ fn a_spherical_joint_is_three_turns() {
 }
 
 #[test]
-fn a_cylindrical_joint_is_a_slide_and_a_turn() {
+fn a_cylindrical_joint_is_a_prismatic_and_a_revolute_joint() {
     let placed = "alpha = \"30 deg\"\nr = \"q + 0.1\"";
     let one_by_one = first("wrist_slide", "prismatic", &format!("{placed}\n{FRICTION}"))
         + &first("wrist", "revolute", "");
@@ -105,7 +105,7 @@ fn a_cylindrical_joint_is_a_slide_and_a_turn() {
 }
 
 #[test]
-fn a_planar_joint_is_two_slides_and_a_turn() {
+fn a_planar_joint_is_two_prismatic_and_a_revolute_joint() {
     let placed = "alpha = \"30 deg\"\nr = 0.1";
     let one_by_one = first(
         "wrist_place",
@@ -136,7 +136,7 @@ fn screw(keys: &str) -> Vec<Axis> {
 }
 
 #[test]
-fn a_helical_joint_is_a_slide_that_follows_a_turn() {
+fn a_helical_joint_is_a_revolute_and_a_coupled_prismatic_joint() {
     let placed = "alpha = \"30 deg\"\nd = 0.1\ntheta = \"q + 45 deg\"\nr = 0.2\npitch = \"5 mm\"";
     let slide = "alpha = \"30 deg\"\nd = 0.1\nr = \"0.001 m/rad * q_wrist + 0.2\"\nparameters = []";
     let one_by_one = first("wrist_slide", "prismatic", slide)
@@ -174,7 +174,7 @@ fn a_helical_joint_is_a_slide_that_follows_a_turn() {
 }
 
 #[test]
-fn a_pitch_is_a_length_that_moves_something() {
+fn invalid_pitches_are_rejected() {
     let one = |keys: &str| listed(&leg("helical", keys)).join("\n");
     assert!(
         one("").contains("pitch = \"5 mm\" for each turn about z"),
@@ -187,10 +187,10 @@ fn a_pitch_is_a_length_that_moves_something() {
         one("pitch = 0")
     );
     for variable in ["q", "2 * q", "q + 0.1"] {
-        let told = one(&format!("pitch = \"{variable}\""));
+        let message = one(&format!("pitch = \"{variable}\""));
         assert!(
-            told.contains("8:9 a pitch is constant and cannot hold a joint variable"),
-            "{told}"
+            message.contains("8:9 a pitch is constant and cannot hold a joint variable"),
+            "{message}"
         );
     }
     let unit = one("pitch = \"5 kg\"");
@@ -206,7 +206,7 @@ fn a_pitch_is_a_length_that_moves_something() {
 }
 
 #[test]
-fn a_variable_in_the_key_of_a_constant_is_told_with_the_axes() {
+fn joint_variables_in_constant_keys_are_rejected_with_the_axes() {
     let place = "gamma, b, alpha, d, theta and r are constants that place them";
     for (word, keys, expected) in [
         ("planar", "r = \"q\"", format!("a planar joint has the axes `wrist_x` (slide), `wrist_y` (slide), `wrist` (turn): {place}")),
@@ -220,13 +220,13 @@ fn a_variable_in_the_key_of_a_constant_is_told_with_the_axes() {
         ("fixed", "theta = \"q + 10 deg\"", "a fixed joint has no variable: use type = \"revolute\"".to_owned()),
     ] {
         let errors = listed(&leg(word, keys)).join("\n");
-        let is_told = errors.contains("is constant and cannot hold a joint variable") && errors.contains(&expected);
-        assert!(is_told, "{word} {keys}: {errors}");
+        let is_reported = errors.contains("is constant and cannot hold a joint variable") && errors.contains(&expected);
+        assert!(is_reported, "{word} {keys}: {errors}");
     }
 }
 
 #[test]
-fn what_joints_of_several_axes_cannot_have() {
+fn keys_of_single_axes_are_rejected_for_compound_joints() {
     let errors = listed(&leg("universal", "actuated = true\nspring = \"q\""));
     let help =
         "; write the axes of this joint as separate joints, of type \"revolute\" and \"prismatic\"";

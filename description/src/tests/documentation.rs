@@ -161,7 +161,7 @@ fn rows(text: &str, heading: &str) -> BTreeSet<String> {
 }
 
 #[test]
-fn every_key_is_documented_and_no_other() {
+fn the_manual_documents_exactly_the_accepted_keys() {
     let text = documentation();
     let headings: Vec<&str> = text.lines().filter(|line| line.starts_with('#')).collect();
     for (section, keys) in SECTIONS.iter().zip(known()) {
@@ -181,19 +181,22 @@ fn every_key_is_documented_and_no_other() {
                 "`{row}` is missing under {heading}"
             );
         }
-        let foreign: Vec<&String> = rows
+        let undocumented: Vec<&String> = rows
             .iter()
             .filter(|row| match row.strip_prefix(before) {
                 Some(key) if !before.is_empty() => !keys.iter().any(|known| known == key),
                 _ => before.is_empty() && !row.contains('.') && !keys.contains(row),
             })
             .collect();
-        assert!(foreign.is_empty(), "no keys: {foreign:?} under {heading}");
+        assert!(
+            undocumented.is_empty(),
+            "no keys: {undocumented:?} under {heading}"
+        );
     }
 }
 
 #[test]
-fn keys_of_cables_are_documented() {
+fn cable_keys_are_documented() {
     let rows = rows(&documentation(), "#### Cables");
     for key in CABLES {
         assert!(rows.contains(key), "`{key}` is missing");
@@ -202,7 +205,7 @@ fn keys_of_cables_are_documented() {
 
 /// All tables are in the tests above; keys of other tables would not have to be documented.
 #[test]
-fn no_table_is_forgotten() {
+fn all_tables_of_the_reader_are_tested() {
     let mut known: BTreeSet<String> = known().into_iter().flatten().collect();
     known.extend(CABLES.map(str::to_owned));
     // Coordinates of homes are in the table of motions; a file of parameters is no description.
@@ -245,7 +248,7 @@ fn no_table_is_forgotten() {
 }
 
 #[test]
-fn every_word_of_a_value_is_documented() {
+fn accepted_words_of_values_are_documented() {
     let text = documentation();
     let quoted: BTreeSet<&str> = text
         .split('`')

@@ -46,7 +46,7 @@ error[OA105]: `d`: expected a length (m), found an angle (15 deg)
 }
 
 #[test]
-fn expressions() {
+fn malformed_expressions_are_rejected() {
     let cases = [
         (
             "d = \"\"",
@@ -124,7 +124,7 @@ fn expressions() {
 }
 
 #[test]
-fn types_and_dimensions() {
+fn wrong_types_and_dimensions_are_rejected() {
     let cases = [
         (
             "d = true",
@@ -168,7 +168,7 @@ fn types_and_dimensions() {
 }
 
 #[test]
-fn joint_positions() {
+fn invalid_joint_positions_are_rejected() {
     let cases = [
         (
             "theta = \"2*q\"",
@@ -212,7 +212,7 @@ fn joint_positions() {
 }
 
 #[test]
-fn chains_of_joints() {
+fn invalid_joint_couplings_are_rejected() {
     assert_eq!(
         joint("name = \"a b\"").split(';').next(),
         Some("6:8 `a b` cannot be the name of a joint")
@@ -260,7 +260,7 @@ fn chains_of_joints() {
 }
 
 #[test]
-fn parameters_of_bodies() {
+fn unknown_body_parameters_are_rejected() {
     let found = joint("parameters = [\"mass\", \"zz\"]");
     assert!(
         found.starts_with("6:15 unknown parameter `mass`; known: xx, xy"),

@@ -10,7 +10,7 @@ fn errors(tables: &str) -> Vec<String> {
 }
 
 #[test]
-fn experiment() {
+fn invalid_experiment_settings_are_rejected() {
     let tables = r#"[experiment]
 sampling = "5 s"
 duration = 0
@@ -71,7 +71,7 @@ terms = []
 }
 
 #[test]
-fn excitation() {
+fn invalid_excitation_settings_are_rejected() {
     let tables = r#"[excitation]
 fundamental = "1 s"
 harmonics = 31
@@ -100,7 +100,7 @@ amplitude = 1
 }
 
 #[test]
-fn data() {
+fn incomplete_data_tables_are_rejected() {
     let found = errors("[data]\ntime = 1\npositions = [\"a\", \"b\"]\ntorque_gain = [0]");
     let expected = [
         "2:1 the table `[data]` has no `torques`; give one column for each actuator",
@@ -112,7 +112,7 @@ fn data() {
 }
 
 #[test]
-fn gains_are_those_of_the_kind_of_joint() {
+fn torque_gains_need_the_unit_of_the_joint_type() {
     let columns = "[data]\ntime = \"t\"\npositions = [\"q\"]\ntorques = [\"i\"]\n";
     let found = |gain: &str| errors(&format!("{columns}torque_gain = {gain}"));
     for good in [
@@ -133,7 +133,7 @@ fn gains_are_those_of_the_kind_of_joint() {
 }
 
 #[test]
-fn logs_have_a_column_of_the_time_or_a_frequency() {
+fn logs_need_a_time_column_or_a_sampling_frequency() {
     let columns = "positions = [\"$1\"]\ntorques = [\"$2\"]\n";
     let data = |text: &str| good(&single(text, "")).data.unwrap();
     let sampled = data(&format!("[data]\n{columns}sampling = \"5 kHz\""));
@@ -161,7 +161,7 @@ fn logs_have_a_column_of_the_time_or_a_frequency() {
 }
 
 #[test]
-fn logs_with_a_column_of_the_time_may_be_resampled() {
+fn only_logs_with_a_time_column_may_be_resampled() {
     let columns = "positions = [\"$1\"]\ntorques = [\"$2\"]\n";
     let table = |text: &str| format!("[data]\n{columns}{text}");
     let rate = |text: &str| good(&single(&table(text), "")).data.unwrap().resample;
@@ -192,7 +192,7 @@ fn logs_with_a_column_of_the_time_may_be_resampled() {
 }
 
 #[test]
-fn joints_stand_still_below_velocities_of_their_kind() {
+fn standstill_velocities_need_the_unit_of_the_joint_type() {
     let limits = |text: &str| {
         let tables = format!("[identification]\nstandstill_velocity = {text}");
         good(&single(&tables, ""))
@@ -215,7 +215,7 @@ fn joints_stand_still_below_velocities_of_their_kind() {
 }
 
 #[test]
-fn torques_pass_the_low_pass_once() {
+fn torques_and_equations_are_not_filtered_twice() {
     let of = |text: &str| good(&single(&format!("[identification]\n{text}"), "")).identification;
     assert!(!of("").filter_equations && of("filter_equations = true").filter_equations);
     assert!(of("filter_torques = true\nfilter_equations = false").filter_torques);
@@ -232,7 +232,7 @@ fn torques_pass_the_low_pass_once() {
 }
 
 #[test]
-fn factors_are_numbers_expressions_or_variables() {
+fn scale_factors_are_numbers_expressions_or_variables() {
     let tables = "[constants]\nk = \"2 N m/A\"\n[data]\ntime = \"t\"\npositions = [\"q\"]\n\
                   torques = [\"i\"]\nposition_scale = \"1 deg\"\ntorque_gain = [\"k\"]";
     let data = good(&single(tables, "")).data.unwrap();
@@ -248,7 +248,7 @@ fn factors_are_numbers_expressions_or_variables() {
 }
 
 #[test]
-fn identification() {
+fn invalid_identification_settings_are_rejected() {
     let tables = "[identification]\nfilter_order = 0\ndecimation = -1\nr_sigma = 0.5\n\
                   normalisation = \"n\"\nkept_actuators = [\"arn\"]\nweighted = 1\nessental = true";
     let expected = [
@@ -264,7 +264,7 @@ fn identification() {
 }
 
 #[test]
-fn kept_actuators_of_the_dualv() {
+fn kept_actuators_are_resolved_or_rejected() {
     let text = include_str!("../../../robots/dualv.toml");
     let kept = |names: &str| text.replace(r#"["leg1", "leg2", "leg3"]"#, names);
     let robot = good(&kept(r#"["leg4", "leg2.1", "leg1"]"#));
@@ -291,7 +291,7 @@ fn kept_actuators_of_the_dualv() {
 }
 
 #[test]
-fn prior() {
+fn invalid_priors_are_rejected() {
     let tables = r#"[prior]
 value = 1
 [prior.values]
@@ -320,7 +320,7 @@ ia_2 = [1, 2]
 }
 
 #[test]
-fn what_is_known_fixes_the_gains() {
+fn gain_identification_needs_nonzero_known_parameters() {
     let tables = r#"[identification]
 gains = true
 [identification.known]
@@ -344,7 +344,7 @@ zz_1 = "2 kg"
 }
 
 #[test]
-fn parameters_of_a_file() {
+fn parameter_files_are_read_or_rejected() {
     let description = good(&single("", ""));
     let read = |text: &str| parse_parameters(&Source::new("parameters.toml", text), &description);
     let all = read("[parameters]\nzz_1 = 0.5\nfv_1 = \"0.1 N m s\"\n").expect("good");

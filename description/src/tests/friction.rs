@@ -4,7 +4,7 @@ use super::{good, listed, single};
 use overact_core::StandardParameter as P;
 
 #[test]
-fn friction_by_direction_takes_the_place_of_the_symmetric() {
+fn directional_friction_replaces_symmetric_friction() {
     let robot = good(&single(
         "",
         "parameters = [\"ia\", \"friction by direction\"]\nstribeck = \"3 deg/s\"",
@@ -29,7 +29,7 @@ fn friction_by_direction_takes_the_place_of_the_symmetric() {
 }
 
 #[test]
-fn known_torques_have_their_values() {
+fn known_torques_are_evaluated() {
     let cases = [
         ("2 N m * sin(q)", 2.0 * 0.3_f64.sin()),
         ("1.5 N m", 1.5),
@@ -43,7 +43,7 @@ fn known_torques_have_their_values() {
 }
 
 #[test]
-fn errors() {
+fn invalid_friction_is_rejected() {
     let joint = |keys: &str| {
         let all = listed(&single("", keys));
         assert_eq!(all.len(), 1, "{keys}: {all:#?}");
@@ -112,13 +112,13 @@ fn errors() {
     for (keys, expected) in cases {
         assert_eq!(joint(keys), expected, "{keys}");
     }
-    let told = joint("stribeck = \"2 mm/s\"");
+    let message = joint("stribeck = \"2 mm/s\"");
     let expected = "6:12 `stribeck`: expected an angular speed (rad/s), found a speed";
-    assert!(told.starts_with(expected), "{told}");
+    assert!(message.starts_with(expected), "{message}");
 }
 
 #[test]
-fn only_joints_that_move_have_friction_and_known_torques() {
+fn friction_and_known_torques_of_fixed_joints_are_rejected() {
     let fixed = |key: &str| {
         let text = format!(
             "name = \"Arm\"\n[[leg.arm.joint]]\ntype = \"revolute\"\nactuated = true\n\
@@ -139,7 +139,7 @@ fn only_joints_that_move_have_friction_and_known_torques() {
 }
 
 #[test]
-fn gains_are_not_identified_beside_known_torques() {
+fn gain_identification_excludes_known_torques() {
     let table = "[identification]\ngains = true\nknown = { zz_1 = \"1 kg m^2\" }";
     let text = format!("{}{table}\n", single("", "known = \"1 N m\""));
     let expected = "12:9 gains are not identified if torques of joints are known: a gain scales measured torques, not known ones; leave out `gains`, or the key `known` of joints and springs";

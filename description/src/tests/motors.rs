@@ -17,7 +17,7 @@ const BOTH: &str = "[[leg.arm.motor]]\nturns = \"q1\"\nratio = 45\n\
                     [[leg.arm.motor]]\nname = \"wrist\"\nturns = \"(q1 + q2)/2\"\nratio = -32";
 
 #[test]
-fn a_coupled_motor_follows_joints_and_has_parameters_of_its_own() {
+fn a_coupled_motor_follows_joints_and_has_its_own_parameters() {
     let robot = good(&arm(BOTH));
     let joints = &robot.legs[0].joints;
     assert_eq!(joints.len(), 4);
@@ -41,7 +41,7 @@ fn a_coupled_motor_follows_joints_and_has_parameters_of_its_own() {
 }
 
 #[test]
-fn errors() {
+fn invalid_coupled_motors_are_rejected() {
     let motor = |keys: &str| {
         let all = listed(&arm(&format!("{BOTH}\n{keys}")).replace("\"motors\"", "\"joints\""));
         assert_eq!(all.len(), 1, "{keys}: {all:#?}");
@@ -91,7 +91,7 @@ fn errors() {
 }
 
 #[test]
-fn logs_of_motors_need_motors_that_determine_the_joints() {
+fn motor_logs_need_motors_that_determine_the_joints() {
     let one = "[[leg.arm.motor]]\nturns = \"q1\"";
     let help =
         "; describe each motor as [[leg.NAME.motor]] with turns = \"q1\" and its gear's ratio";
@@ -106,8 +106,8 @@ fn logs_of_motors_need_motors_that_determine_the_joints() {
 }
 
 #[test]
-fn a_slip_in_one_motor_is_told_alone() {
-    for (slip, expected) in [
+fn an_error_in_one_motor_is_reported_alone() {
+    for (mistake, expected) in [
         ("turns = \"q3\"", "unknown name `q3`"),
         (
             "turns = \"q2\"\nratio = \"45 deg\"",
@@ -116,9 +116,9 @@ fn a_slip_in_one_motor_is_told_alone() {
         ("turns = \"q2\"\nratio = 0", "a gear of ratio 0"),
     ] {
         let all = listed(&arm(&format!(
-            "[[leg.arm.motor]]\nturns = \"q1\"\n[[leg.arm.motor]]\n{slip}"
+            "[[leg.arm.motor]]\nturns = \"q1\"\n[[leg.arm.motor]]\n{mistake}"
         )));
-        assert_eq!(all.len(), 1, "{slip}: {all:#?}");
+        assert_eq!(all.len(), 1, "{mistake}: {all:#?}");
         assert!(all[0].contains(expected), "{all:#?}");
     }
     // A fixed joint that stays actuated has no variable, which is not reported again.
@@ -138,7 +138,7 @@ fn slides(tables: &str) -> String {
 }
 
 #[test]
-fn motors_of_robots_with_loops_turn_joints_of_several_legs() {
+fn closed_loop_motors_drive_joints_of_several_legs() {
     let robot = good(&slides(
         "[motor.sum]\nturns = \"left.q1 + 0.5*right.q1\"\nratio = 3\n\
          [motor.own]\nturns = \"2*right.q1\"\nparameters = [\"ia\"]",
@@ -162,7 +162,7 @@ fn motors_of_robots_with_loops_turn_joints_of_several_legs() {
 }
 
 #[test]
-fn a_motor_of_a_leg_is_placed_with_it() {
+fn motors_of_a_leg_are_placed_with_it() {
     let robot = good(&slides("").replace(
         "[leg.slide.end]",
         "[[leg.slide.motor]]\nname = \"belt\"\nturns = \"2*q1\"\n[leg.slide.end]",
@@ -180,7 +180,7 @@ fn a_motor_of_a_leg_is_placed_with_it() {
 }
 
 #[test]
-fn errors_of_motors_of_robots_with_loops() {
+fn invalid_motors_of_closed_loop_robots_are_rejected() {
     let first = "[motor.a]\nturns = \"left.q1\"\n";
     let cases = [
         (
@@ -220,7 +220,7 @@ fn errors_of_motors_of_robots_with_loops() {
 }
 
 #[test]
-fn a_table_of_a_motor_may_stand_outside_its_leg() {
+fn serial_motors_may_be_described_outside_their_leg() {
     let text = arm("").replace(
         "[data]",
         "[motor.one]\nturns = \"q1\"\nratio = 45\n\
@@ -236,7 +236,7 @@ fn a_table_of_a_motor_may_stand_outside_its_leg() {
 }
 
 #[test]
-fn logs_of_robots_with_loops_have_motors_or_joints() {
+fn closed_loop_logs_may_have_motor_or_joint_coordinates() {
     let log = |coordinates: &str, motors: &str| {
         slides(motors)
             + "[data]\ntime = \"t\"\npositions = [\"a\", \"b\"]\ntorques = [\"c\", \"d\"]\n"
@@ -254,9 +254,9 @@ fn logs_of_robots_with_loops_have_motors_or_joints() {
     // θ = T q, and the log has q.
     let joints = transmission("coordinates = \"joints\"");
     assert_eq!(joints, [[0.5, 0.5], [0.5, -0.5]]);
-    let twins = "[motor.a]\nturns = \"left.q1 + right.q1\"\n\
+    let dependent_motors = "[motor.a]\nturns = \"left.q1 + right.q1\"\n\
                  [motor.b]\nturns = \"2*left.q1 + 2*right.q1\"";
-    let all = listed(&log("coordinates = \"joints\"", twins));
+    let all = listed(&log("coordinates = \"joints\"", dependent_motors));
     assert_eq!(
         all,
         [

@@ -20,7 +20,7 @@ fn spring(keys: &str) -> PointSpring {
 }
 
 #[test]
-fn forces_have_their_values_and_units() {
+fn spring_forces_have_their_values_and_units() {
     let (length, rate) = (0.5, -0.2);
     let cases = [
         ("l - 0.3 m", 0.2, "N/m"),
@@ -45,7 +45,7 @@ fn forces_have_their_values_and_units() {
 }
 
 #[test]
-fn ends_are_on_bodies() {
+fn spring_ends_are_attached_to_bodies() {
     let own = spring("known = \"5 N\"");
     assert_eq!(own.from.body, SpringBody::Ground);
     assert!((own.from.at[1].value() - 0.05).abs() < 1e-15);
@@ -61,7 +61,7 @@ fn ends_are_on_bodies() {
 }
 
 #[test]
-fn errors() {
+fn invalid_springs_between_points_are_rejected() {
     let of = |keys: &str| {
         let all = listed(&arm(keys));
         assert_eq!(all.len(), 1, "{keys}: {all:#?}");
@@ -116,7 +116,7 @@ fn errors() {
 }
 
 #[test]
-fn names_are_words_and_unique() {
+fn spring_names_are_identifiers_and_unique() {
     let twice = arm(&format!(
         "{ENDS}\nforce = \"l\"\n[[spring]]\nname = \"gas\"\n{ENDS}\nknown = \"1 N\""
     ));

@@ -16,7 +16,7 @@ fn decimal(text: &str) -> Number {
 }
 
 #[test]
-fn the_dualv_is_table_1() {
+fn the_dualv_has_the_geometry_of_table_1() {
     let robot = good(DUALV);
     assert_eq!(robot.type_name(), "DualV");
     assert_eq!(robot.gravity[2], decimal("-9.81"));
@@ -52,7 +52,7 @@ fn the_dualv_is_table_1() {
 
 /// At home every leg has to reach its platform point roughly.
 #[test]
-fn the_dualv_is_nearly_closed_at_home() {
+fn the_dualv_home_nearly_closes_all_legs() {
     for (index, leg) in good(DUALV).legs.iter().enumerate() {
         let gamma = leg.joints[0].gamma.value.value();
         let q: Vec<f64> = leg.joints.iter().map(|j| j.home.value()).collect();
@@ -76,7 +76,7 @@ fn the_dualv_is_nearly_closed_at_home() {
 }
 
 #[test]
-fn the_dualv_has_an_experiment() {
+fn the_dualv_experiment_is_read() {
     let robot = good(DUALV);
     let experiment = robot.experiment.unwrap();
     assert_eq!(experiment.sampling, 5000.0);
@@ -98,7 +98,7 @@ fn the_dualv_has_an_experiment() {
 }
 
 #[test]
-fn the_emps_slides_horizontally() {
+fn the_emps_is_a_horizontal_prismatic_joint() {
     let robot = good(EMPS);
     assert!(robot.platform.is_none() && robot.legs.len() == 1);
     let joint = &robot.legs[0].joints[0];

@@ -11,7 +11,7 @@ fn spring(text: &str) -> Spring {
 }
 
 #[test]
-fn formulas_have_their_values_and_units() {
+fn spring_formulas_have_their_values_and_units() {
     let at = 0.3_f64;
     let cases = [
         ("q", at, "N m/rad"),
@@ -40,7 +40,7 @@ fn formulas_have_their_values_and_units() {
 }
 
 #[test]
-fn errors() {
+fn invalid_joint_springs_are_rejected() {
     let joint = |keys: &str| {
         let all = listed(&single("", keys));
         assert_eq!(all.len(), 1, "{keys}: {all:#?}");
@@ -99,7 +99,7 @@ fn errors() {
 }
 
 #[test]
-fn only_joints_that_move_have_springs() {
+fn springs_of_fixed_joints_are_rejected() {
     let fixed = "name = \"Arm\"\n[[leg.arm.joint]]\ntype = \"revolute\"\nactuated = true\n\
                  [[leg.arm.joint]]\ntype = \"fixed\"\nspring = \"q\"\n\
                  [[place]]\nname = \"arm\"\nshape = \"arm\"\n";
@@ -107,7 +107,7 @@ fn only_joints_that_move_have_springs() {
 }
 
 #[test]
-fn joints_of_loops_have_springs_known_torques_and_loads() {
+fn closed_loop_joints_have_springs_known_torques_and_loads() {
     let platform = "name = \"Slide\"\n[platform]\nmotion = \"fixed axis\"\naxis = \"z\"\n\
                     [[leg.slide.joint]]\ntype = \"prismatic\"\nactuated = true\n\
                     spring = \"q - 1 cm\"\nknown = \"3 N\"\nfriction_load = \"2 N/m * q\"\n\

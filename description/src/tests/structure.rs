@@ -8,7 +8,7 @@ fn root(keys: &str) -> Vec<String> {
 }
 
 #[test]
-fn names_of_robots_and_constants() {
+fn invalid_robot_and_constant_names_are_rejected() {
     let named = |name: &str| listed(&single("", "").replace("\"Arm\"", name)).concat();
     assert!(named("\"struct\"").starts_with("1:8 \"struct\" is a keyword of Rust"));
     assert!(named("\"self\"").starts_with("1:8 \"self\" is a keyword of Rust"));
@@ -28,7 +28,7 @@ fn names_of_robots_and_constants() {
 }
 
 #[test]
-fn places_and_shapes() {
+fn invalid_placements_are_rejected() {
     let text = r#"name = "A"
 [leg.a]
 variables = ["x", "x", "name"]
@@ -73,7 +73,7 @@ x = 1
 }
 
 #[test]
-fn missing_parts() {
+fn missing_parts_are_reported() {
     let help = "write each leg once as [[leg.NAME.joint]] and place it by [[place]]";
     let expected = [
         "1:1 the description has no `name`; for instance name = \"MyRobot\"".to_owned(),
@@ -97,7 +97,7 @@ fn missing_parts() {
 }
 
 #[test]
-fn platforms() {
+fn invalid_platforms_are_rejected() {
     let cases = [
         (
             "motion = \"planr\"",
@@ -149,7 +149,7 @@ fn platforms() {
 }
 
 #[test]
-fn broken_toml() {
+fn invalid_toml_is_located() {
     let found = listed("name = \"A\"\nb = = 2\n[c\n");
     // The unclosed table of the next line is not reported: it may be a consequence.
     assert_eq!(found.len(), 1, "{found:#?}");
@@ -161,7 +161,7 @@ fn broken_toml() {
 
 /// A wrong expression in a leg is reported once, however often the leg is placed.
 #[test]
-fn one_error_for_all_placements() {
+fn errors_of_repeated_placements_are_reported_once() {
     let text = include_str!("../../../robots/dualv.toml").replace("d = \"l_ab\"", "d = \"turn\"");
     let found = listed(&text);
     assert_eq!(found.len(), 1, "{found:#?}");
@@ -170,7 +170,7 @@ fn one_error_for_all_placements() {
 
 /// Any damaged text gives a description or a list of errors.
 #[test]
-fn damaged_files_do_no_harm() {
+fn damaged_files_never_panic() {
     let whole = include_str!("../../../robots/dualv.toml");
     for end in (0..whole.len()).step_by(41) {
         let _ = rendered(whole.get(..end).unwrap_or_default());
@@ -189,7 +189,7 @@ fn damaged_files_do_no_harm() {
 
 /// The examples of the manual are valid, too.
 #[test]
-fn the_manual_has_a_good_example() {
+fn the_example_of_the_manual_is_valid() {
     let manual = include_str!("../../../robots/README.md");
     let example = manual
         .split("```toml")

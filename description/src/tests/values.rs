@@ -60,7 +60,7 @@ fn lengths_are_exact() {
 }
 
 #[test]
-fn dependent_joints_are_resolved() {
+fn coupled_joints_are_resolved() {
     let text = r#"
 name = "Parallelogram"
 [[leg.arm.joint]]
@@ -105,7 +105,7 @@ home = { root = "20 deg", 4 = 1 }
 }
 
 #[test]
-fn defaults() {
+fn omitted_keys_have_defaults() {
     let robot = good(&single("", ""));
     assert_eq!(
         robot.gravity,
@@ -124,7 +124,7 @@ fn defaults() {
 }
 
 #[test]
-fn motions_and_ends() {
+fn platform_motions_and_leg_ends_are_read() {
     let robot = good(
         r#"
 name = "one_axis"
@@ -162,7 +162,7 @@ shape = "a"
 }
 
 #[test]
-fn a_fixed_axis_is_slid_along_or_turned_about() {
+fn fixed_axis_platforms_translate_or_rotate() {
     let on_axis = |axis: &str| {
         format!(
             "name = \"one_axis\"\n[platform]\nmotion = \"fixed axis\"\naxis = {axis}\n\
@@ -186,7 +186,7 @@ fn a_fixed_axis_is_slid_along_or_turned_about() {
 }
 
 #[test]
-fn numbers_of_another_unit_are_doubted() {
+fn numbers_that_suggest_another_unit_are_warned_about() {
     let warnings = |joint: &str| -> Vec<String> {
         let warnings = good(&single("", joint)).warnings.into_iter();
         warnings.map(|warning| warning.value).collect()
@@ -210,7 +210,7 @@ fn numbers_of_another_unit_are_doubted() {
 }
 
 #[test]
-fn a_payload_with_a_capital_is_doubted() {
+fn a_capitalised_payload_name_is_warned_about() {
     let with = |name: &str| {
         let joint = format!("\n[[leg.arm.joint]]\ntype = \"fixed\"\nname = \"{name}\"");
         good(&single("", &joint)).warnings
@@ -225,7 +225,7 @@ fn a_payload_with_a_capital_is_doubted() {
 }
 
 #[test]
-fn columns_that_are_no_expressions_are_doubted_at_their_line() {
+fn malformed_column_expressions_are_warned_about_at_their_line() {
     let data = "[data]\ntime = \"t\"\npositions = [\"q\"]\ntorques = [\n  \"i *\"\n]\n";
     let text = single(data, "");
     let found = good(&text).warnings;

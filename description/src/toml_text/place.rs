@@ -47,7 +47,7 @@ mod tests {
     use crate::diagnostic::Source;
 
     #[test]
-    fn a_key_is_found_or_what_would_hold_it() {
+    fn keys_or_their_parent_tables_are_located() {
         let text = "[a]\nb = 1\n[[a.run]]\nt = [{ h = 7 }, { h = 8 }]\n[[a.run]]\nt = []\n";
         let source = Source::new("my.toml", text);
         let found = |path: &str| {

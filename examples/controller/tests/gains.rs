@@ -7,7 +7,7 @@ use overact_simulation::actuator_inertias;
 const DESCRIPTION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/dualv.toml");
 
 #[test]
-fn constants_are_those_of_the_description() {
+fn controller_constants_match_the_description() {
     let robot = Robot::from_toml(DESCRIPTION).unwrap();
     let experiment = robot.experiment().unwrap();
     let plan = experiment.plan();

@@ -52,7 +52,7 @@ fn load(run: &Run) -> Load {
 }
 
 #[test]
-fn modules_are_what_their_parameters_generate() {
+fn checked_in_modules_are_fresh() {
     let all = ["actuator_positions", "inverse_dynamics", "project_torques"];
     let platform = ["pose_from_actuators", "project_platform", "idm_red_payload"];
     let modules = [
@@ -122,7 +122,7 @@ fn tracking(robot: &Robot, plan: &Experiment, run: &Run) -> [Vec<f64>; 3] {
 }
 
 #[test]
-fn computed_torque_follows_better_than_pd_alone() {
+fn computed_torque_tracks_better_than_pd() {
     let robot = dualv();
     let experiment = robot.experiment().unwrap();
     let mut plan = experiment.plan().clone();
@@ -152,7 +152,7 @@ fn computed_torque_follows_better_than_pd_alone() {
 /// Inverse dynamics with constant parameters compared with the true parameters, along the
 /// validation runs.
 #[test]
-fn baked_torques_are_the_robots() {
+fn constant_parameter_torques_match_the_true_parameters() {
     let robot = dualv();
     let experiment = robot.experiment().unwrap();
     let plan = experiment.plan();
@@ -161,7 +161,7 @@ fn baked_torques_are_the_robots() {
 }
 
 #[test]
-fn an_identification_anew_gives_what_is_baked() {
+fn a_new_identification_gives_the_constant_parameters() {
     if !is_full() {
         return;
     }

@@ -348,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drive_whose_gain_nothing_tells_is_named_before_all_others() {
+    fn drives_with_undetectable_gain_are_listed_first() {
         let gains = vec![
             limit(FaultHypothesis::Gain(0), "left", (0.03, ""), 7.0),
             Detectable::undetectable_gain(1, "right"),
@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_harmless_or_was_found_is_not_told() {
+    fn harmless_or_detected_faults_are_not_listed_as_undetectable() {
         let harmless = limit(FaultHypothesis::Gain(0), "left", (0.1, ""), HARMFUL);
         let harmless = check(CheckKind::WrongGain, vec![harmless]);
         let delay = limit(FaultHypothesis::Delay, "", (1e-3, "s"), 50.0);

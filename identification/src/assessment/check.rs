@@ -444,7 +444,7 @@ mod tests {
     use super::{About, Check, CheckKind};
 
     #[test]
-    fn a_message_names_its_drive_once() {
+    fn a_message_mentions_its_drive_once() {
         let located = |name: &str, words: &str| {
             let check = Check::new(CheckKind::StuckEncoder, About::Data, words);
             check.of_actuator(name).located()

@@ -321,7 +321,7 @@ mod tests {
     use super::explains;
 
     #[test]
-    fn a_change_explains_a_miss_of_which_it_leaves_little() {
+    fn a_change_explains_a_residual_if_little_remains() {
         let tolerance = 1e-3;
         assert!(explains(1e-4, Some(0.5), tolerance));
         // The loops stay open, although the residual is much smaller.

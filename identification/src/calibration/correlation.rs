@@ -296,7 +296,7 @@ mod tests {
     use super::{Noise, levinson};
 
     #[test]
-    fn autocovariances_and_coefficients_belong_together() {
+    fn autocovariances_and_ar_coefficients_are_inverse() {
         let noise = Noise {
             coefficients: vec![-1.2, 0.6, -0.1],
             variance: 2.0,

@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mass_and_a_centre_get_the_uniform_body_s_moments_about_them() {
+    fn mass_and_centre_are_completed_by_uniform_body_moments() {
         // A ball of 1 kg and moments 0.01 becomes 4 kg with centre (0.5, 0, 0).
         let mut given = [None; 10];
         (given[6], given[9]) = (Some(2.0), Some(4.0));
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_moment_of_a_body_in_the_plane_stays_and_the_others_follow() {
+    fn a_planar_moment_is_kept_and_the_others_are_completed() {
         let mut given = [None; 10];
         (given[5], given[6], given[9]) = (Some(0.3), Some(0.5), Some(2.0));
         let own = completed(&given, &ball());
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn a_moment_alone_scales_the_uniform_body() {
+    fn a_single_moment_scales_the_uniform_body() {
         let mut given = [None; 10];
         given[5] = Some(0.03);
         assert!((completed(&given, &ball()) - ball() * 3.0).norm() < 1e-6);

@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn the_slope_is_that_of_the_divergence() -> Result<(), &'static str> {
+    fn the_gradient_is_that_of_the_divergence() -> Result<(), &'static str> {
         let [prior, own] = bodies();
         let cone = BodyCone::new(&prior, &own, 1.0).ok_or("no body")?;
         let (slope, scaling) = (cone.slope(1.0, 1.0), cone.scaling());
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_moves_a_body_by_what_was_proposed() -> Result<(), &'static str> {
+    fn steps_move_bodies_by_the_proposed_change() -> Result<(), &'static str> {
         let [prior, own] = bodies();
         let mut cone = BodyCone::new(&prior, &own, 0.3).ok_or("no body")?;
         for (weight, part) in [(0.1, 0.5), (0.02, 0.9), (0.01, 1.0)] {
@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn full_steps_of_no_slope_lead_to_the_prior() -> Result<(), &'static str> {
+    fn newton_steps_without_data_converge_to_the_prior() -> Result<(), &'static str> {
         let [prior, own] = bodies();
         let mut cone = BodyCone::new(&prior, &own, 1.0).ok_or("no body")?;
         for _ in 0..12 {
@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn a_coefficient_reaches_as_far_as_zero() -> Result<(), &'static str> {
+    fn coefficient_steps_end_at_zero() -> Result<(), &'static str> {
         let mut cone = PositiveCone::new(2.0, 2.0, 1.0).ok_or("not positive")?;
         // On the path of weight 1, the scaling of a coefficient is its value.
         let step = Inertia::from_fn(|k, _| if k == 0 { -4.0 } else { 0.0 });

@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_leaves_no_slope() {
+    fn newton_steps_solve_the_normal_equations() {
         let equations = equations();
         let (rest, slope) = (
             DVector::from_vec(vec![3.0, -1.0]),
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_that_are_nearly_dependent_are_told_apart() {
+    fn nearly_dependent_rows_are_resolved() {
         let mut rows = DMatrix::from_fn(2, 12, |_, k| (1.0 + k as f64) * 1e6);
         rows[(1, 0)] += 1e-4;
         let scalings = vec![(0, 10, Metric::identity()), (10, 1, Metric::identity())];
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn variances_are_those_of_the_inverse() {
+    fn variances_are_the_diagonal_of_the_inverse() {
         let equations = equations();
         let normal = DMatrix::identity(12, 12) + equations.matrix.tr_mul(&equations.matrix);
         let inverse = normal.try_inverse().expect("regular");

@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn parameters_and_pseudo_inertia_are_inverse() {
+    fn parameters_and_pseudo_inertia_convert_both_ways() {
         for (k, direction) in directions().iter().enumerate() {
             for (l, dual) in duals().iter().enumerate() {
                 let expected = f64::from(u8::from(k == l));
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_is_nearest_to_itself_and_no_body_has_no_distance() {
+    fn divergence_is_zero_for_equal_and_undefined_for_invalid_bodies() {
         assert!(divergence(&body(), &body()).is_some_and(|distance| distance.abs() < 1e-12));
         assert!(definiteness(&body()) > 0.0);
         let mut impossible = body();

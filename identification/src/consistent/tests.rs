@@ -55,7 +55,7 @@ fn rows(count: usize, noise: f64) -> DMatrix<f64> {
 }
 
 #[test]
-fn without_data_the_prior_stands() -> Result<(), &'static str> {
+fn without_data_the_prior_is_returned() -> Result<(), &'static str> {
     let all = unknowns(body(), Vec::new());
     let found = solve(&all, &DMatrix::zeros(0, 12), &DVector::zeros(0)).ok_or("no solution")?;
     assert!((found.values.rows(0, 10) - body()).norm() < 1e-9);
@@ -65,7 +65,7 @@ fn without_data_the_prior_stands() -> Result<(), &'static str> {
 }
 
 #[test]
-fn a_body_that_the_data_determine_is_found() -> Result<(), &'static str> {
+fn a_fully_determined_body_is_recovered() -> Result<(), &'static str> {
     let mut prior = body() * 3.0;
     prior[9] *= 1.2;
     let all = unknowns(prior, Vec::new());
@@ -80,7 +80,7 @@ fn a_body_that_the_data_determine_is_found() -> Result<(), &'static str> {
 }
 
 #[test]
-fn what_no_robot_has_becomes_the_nearest_that_one_has() -> Result<(), &'static str> {
+fn impossible_parameters_are_replaced_by_the_nearest_possible() -> Result<(), &'static str> {
     let all = unknowns(body(), Vec::new());
     // Impossible moments (xx + yy < zz), and a negative coefficient.
     let mut wanted = DVector::zeros(12);
@@ -118,7 +118,7 @@ fn what_no_robot_has_becomes_the_nearest_that_one_has() -> Result<(), &'static s
 }
 
 #[test]
-fn bounds_are_kept() -> Result<(), &'static str> {
+fn bounds_are_respected() -> Result<(), &'static str> {
     let bounds = vec![(9, [1.0, 1.5])];
     let all = unknowns(body(), bounds);
     let mut wanted = DVector::zeros(12);
@@ -134,7 +134,7 @@ fn bounds_are_kept() -> Result<(), &'static str> {
 }
 
 #[test]
-fn numbers_that_are_none_end_the_search() {
+fn nan_data_end_the_search() {
     let all = unknowns(body(), Vec::new());
     let a = rows(12, 1e-3);
     assert_eq!(solve(&all, &a, &DVector::repeat(12, f64::NAN)), None);

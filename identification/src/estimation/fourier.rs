@@ -349,7 +349,7 @@ mod tests {
     use std::f64::consts::PI;
 
     #[test]
-    fn spectra_of_whole_periods_are_those_of_the_definition() {
+    fn whole_period_spectra_match_the_definition() {
         let value = |row: usize, column: usize| ((row * row + 3 * column) as f64 * 0.7).sin();
         let signals = DMatrix::from_fn(16, 3, value);
         let [real, imaginary] = Fourier::circular(16).whole(&signals);
@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn spectra_and_correlations_are_those_of_the_definitions() {
+    fn spectra_and_correlations_match_the_definitions() {
         let x: Vec<f64> = (0..13).map(|k| (f64::from(k * k) * 0.7).sin()).collect();
         let y: Vec<f64> = (0..11).map(|k| (f64::from(k) * 1.3).cos()).collect();
         let fourier = Fourier::for_correlation(x.len());

@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn the_variance_of_a_sum_holds_noise_and_what_returns() {
+    fn the_sum_variance_includes_noise_and_periodic_residuals() {
         for (periods, returning) in [(1, 0.0), (10, 0.0), (10, 1.0), (40, 0.5)] {
             let (mut estimated, mut squares, mut freedom) = (0.0, 0.0, 0.0);
             for seed in 0..DRAWS {
@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_hypothesis_explains_is_no_part_of_the_variance() {
+    fn explained_residuals_are_excluded_from_the_variance() {
         let (sum_variance, _) = drawn(1, 10, 0.0);
         let half = 0.5 * (10 * PERIOD) as f64;
         assert!((sum_variance.square - half).abs() < 1e-9 * half);

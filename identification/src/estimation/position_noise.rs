@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_of_late_stamps_vanishes_at_rest() {
+    fn timestamp_jitter_noise_vanishes_at_rest() {
         let mut noise = Noise::default();
         let resolution = 1e-4;
         let signal: Vec<f64> = (0..5000)

@@ -78,7 +78,7 @@ fn same(a: &Pooled, b: &Pooled) {
 }
 
 #[test]
-fn order_and_place_do_not_matter() {
+fn merging_order_does_not_change_estimates() {
     let all = records(1, 12);
     for limit in [16, 1000] {
         let whole = pooled(&all, limit).estimate();
@@ -98,7 +98,7 @@ fn order_and_place_do_not_matter() {
 }
 
 #[test]
-fn a_pool_without_records_says_no_more_than_it_was_told() {
+fn an_empty_pool_only_contributes_its_group_limit() {
     let all = records(6, 40);
     let (first, second) = all.split_at(200);
     let groups = |pool: &Pool| pool.estimate().groups;
@@ -123,7 +123,7 @@ fn a_pool_without_records_says_no_more_than_it_was_told() {
 }
 
 #[test]
-fn the_smallest_number_of_groups_holds_whatever_is_merged_first() {
+fn the_smallest_group_limit_applies_in_every_merge_order() {
     let all = records(7, 40);
     let few = pooled(&all, 8).estimate();
     assert!(few.groups <= 8);
@@ -155,7 +155,7 @@ fn the_smallest_number_of_groups_holds_whatever_is_merged_first() {
 }
 
 #[test]
-fn it_is_the_weighted_least_squares_estimate_of_all_equations() {
+fn the_pool_gives_the_weighted_least_squares_estimate() {
     let all = records(2, 3);
     let output = pooled(&all, 100).estimate();
     // Weights from each line alone; then the normal equations of both.
@@ -193,7 +193,7 @@ fn it_is_the_weighted_least_squares_estimate_of_all_equations() {
 }
 
 #[test]
-fn nothing_counts_twice_and_nothing_damaged_counts() {
+fn duplicate_and_damaged_records_are_not_counted() {
     let all = records(3, 4);
     let good = pooled(&all, 16);
     let mut twice = pooled(all.iter().chain(&all[..10]), 16);
@@ -202,21 +202,21 @@ fn nothing_counts_twice_and_nothing_damaged_counts() {
     let other = pooled(&all[..1], 16);
     assert_eq!(twice.merge(other), Err(PoolError::Twice));
 
-    let mut spoiled = pooled(&all, 16);
+    let mut corrupted = pooled(&all, 16);
     let bytes = all[0].to_bytes();
     for at in [0, 5, 9, 20, bytes.len() - 1] {
         let mut wrong = bytes.clone();
         wrong[at] ^= 1;
-        spoiled.push(&wrong);
+        corrupted.push(&wrong);
     }
-    spoiled.push(&bytes[..bytes.len() - 3]);
-    assert_eq!(spoiled.estimate().damaged, 6);
-    same(&good.estimate(), &spoiled.estimate());
+    corrupted.push(&bytes[..bytes.len() - 3]);
+    assert_eq!(corrupted.estimate().damaged, 6);
+    same(&good.estimate(), &corrupted.estimate());
     let mut infinite = all[0].clone();
     infinite.content += 1 << 70;
     infinite.factor = Factor::of(DMatrix::identity(4, 4) * f64::INFINITY, 9, vec![0.0; 4]);
-    spoiled.push(&infinite.to_bytes());
-    assert_eq!(spoiled.estimate().damaged, 7);
+    corrupted.push(&infinite.to_bytes());
+    assert_eq!(corrupted.estimate().damaged, 7);
     let pool = good.to_bytes();
     assert_eq!(
         Pool::from_bytes(&pool[..pool.len() - 1]),
@@ -226,7 +226,7 @@ fn nothing_counts_twice_and_nothing_damaged_counts() {
 }
 
 #[test]
-fn only_like_with_like() {
+fn records_of_other_settings_or_payloads_are_not_pooled() {
     let mut all = records(4, 3);
     for record in &mut all[..10] {
         record.settings_hash = 2;
@@ -254,9 +254,9 @@ fn only_like_with_like() {
 }
 
 #[test]
-fn intervals_cover_and_equal_parameters_are_told_apart_as_often_as_said() {
+fn pooled_intervals_and_tests_have_their_nominal_rates() {
     let draws = overact_tier::by_tier([200, 2000]);
-    let (mut covered, mut white, mut apart) = (0, 0, 0);
+    let (mut covered, mut white, mut rejected) = (0, 0, 0);
     let mut last = None;
     for seed in 0..draws {
         let output = pooled(&records(100 + seed, 3), 16).estimate();
@@ -267,12 +267,12 @@ fn intervals_cover_and_equal_parameters_are_told_apart_as_often_as_said() {
         }
         if let Some(last) = last.replace(output.clone()) {
             let compared = compare(&last, &output, &["a", "c"]).expect("both have them");
-            apart += u64::from(compared.probability < 0.05);
+            rejected += u64::from(compared.probability < 0.05);
         }
         assert!(compare(&output, &output, &["d"]).is_none());
     }
     let part = covered as f64 / (3 * draws) as f64;
     assert!((0.92..0.98).contains(&part), "{part}; white {white}");
-    let part = apart as f64 / draws as f64;
+    let part = rejected as f64 / draws as f64;
     assert!((0.01..0.10).contains(&part), "{part}");
 }

@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn a_parabola_is_exact_inside() {
+    fn central_differences_are_exact_for_a_parabola() {
         let signal: Vec<f64> = (0..6).map(|k| f64::from(k * k)).collect();
         for reach in [1, 2] {
             let whole = signals(&signal, 1, 0).central_differences(0..6, reach);
@@ -97,7 +97,7 @@ mod tests {
 
     /// A sine's derivative is too small by (ωT)²/6 and (ωT)⁴/30.
     #[test]
-    fn errors_are_of_second_and_fourth_order() {
+    fn central_differences_are_of_second_and_fourth_order() {
         let step = 0.1_f64;
         let signal: Vec<f64> = (0..9)
             .flat_map(|k| [(step * f64::from(k)).sin(), 1.0])

@@ -141,7 +141,7 @@ mod tests {
     use nalgebra::{DMatrix, DVector};
 
     #[test]
-    fn least_squares_without_negative_values() {
+    fn least_squares_values_are_not_negative() {
         let matrix = DMatrix::from_row_slice(3, 2, &[1.0, 1.0, 1.0, 2.0, 0.0, 1.0]);
         let free = not_negative(&matrix, &(&matrix * DVector::from_vec(vec![2.0, 3.0])));
         assert!((free - DVector::from_vec(vec![2.0, 3.0])).amax() < 1e-9);

@@ -129,7 +129,7 @@ mod tests {
     use super::DriveGain;
 
     #[test]
-    fn a_gain_is_wrong_beyond_three_deviations_and_two_per_cent() {
+    fn a_wrong_gain_exceeds_three_deviations_and_two_per_cent() {
         let gain = |factor, deviation| DriveGain {
             actuator: String::from("leg1"),
             factor,

@@ -87,7 +87,7 @@ mod tests {
     use super::GravityFrame;
 
     #[test]
-    fn gravity_along_z_turns_towards_x_and_y() {
+    fn gravity_along_z_is_tilted_towards_x_and_y() {
         let frame = GravityFrame::new(Vector3::new(0.0, 0.0, -9.81)).expect("a frame");
         assert_eq!(frame.tilts, [Vector3::x(), Vector3::y()]);
         let rotated = frame.rotated(&DVector::from_vec(vec![0.03, 0.04]));

@@ -231,7 +231,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     #[test]
-    fn conditions_determinants_and_inverses_are_those_of_dense_algebra() {
+    fn conditions_determinants_and_inverses_agree_with_dense_algebra() {
         let mut seed = 1_u64;
         let mut random = || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sample_has_the_same_condition_in_any_company() {
+    fn condition_numbers_do_not_depend_on_other_samples() {
         let jacobians: Vec<f64> = (0..21 * 12)
             .map(|k| (0.37 * f64::from(k * k)).sin())
             .collect();

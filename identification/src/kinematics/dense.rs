@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_exchanged_where_a_diagonal_is_small() {
+    fn rows_are_exchanged_for_small_pivots() {
         let determinants = eliminated(&mut side_by_side(&NEEDS_PIVOTS), 3);
         let mut inverses = side_by_side(&[[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]]);
         let is_regular = invert(&mut side_by_side(&NEEDS_PIVOTS), &mut inverses, 3);

@@ -177,7 +177,7 @@ mod tests {
     /// With B = 1 both distributions agree. With any B they satisfy the model, and the multipliers
     /// are those of the pseudo-inverse.
     #[test]
-    fn torques_satisfy_the_model() {
+    fn distributed_torques_satisfy_the_model() {
         let mut seed = 1_u64;
         let mut random = || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);

@@ -63,7 +63,7 @@ mod tests {
     use super::mean_sign;
 
     #[test]
-    fn the_mean_sign_is_that_of_the_interval() {
+    fn the_mean_sign_is_averaged_over_the_interval() {
         // From -0.5 to 1.5: a quarter of the interval is negative.
         assert_eq!(mean_sign(0.5, 2.0), 0.5);
         assert_eq!(mean_sign(-0.5, -2.0), -0.5);

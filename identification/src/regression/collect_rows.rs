@@ -64,7 +64,7 @@ mod tests {
     use super::{RowSource, collect_rows};
 
     #[test]
-    fn numbers_go_to_their_places_line_by_line() {
+    fn numbers_are_collected_into_rows_line_by_line() {
         // Two samples of two lines: three numbers, and one of another function.
         let robot: Vec<f64> = (0..12).map(f64::from).collect();
         let more = [0.5, 0.25, -0.5, -0.25];

@@ -124,7 +124,7 @@ mod tests {
     use super::{eliminate, residual};
 
     #[test]
-    fn relations_come_back() {
+    fn column_relations_are_recovered() {
         // Column 2 = 3 × column 0 - 0.5 × column 1, column 3 is zero, column 4 is independent.
         let matrix = DMatrix::from_fn(6, 5, |row, column| {
             let x = [(row as f64).sin(), (row * row) as f64 * 0.1];

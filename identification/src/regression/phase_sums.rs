@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn products_of_means_are_those_of_all_rows_of_a_periodic_motion() {
+    fn phase_means_preserve_products_of_a_periodic_motion() {
         // Five periods of 60 equations, with 32 phases.
         let phases = phases(600, 10).expect("long enough");
         let row = |equation: usize| {
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_period_of_a_few_equations_is_not_summed() {
+    fn short_periods_are_not_summed() {
         assert!(phases(150, 10).is_none());
         assert!(phases(160, 10).is_some());
     }

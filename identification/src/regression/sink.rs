@@ -414,7 +414,7 @@ mod tests {
     }
 
     #[test]
-    fn every_equation_belongs_to_one_part() {
+    fn every_equation_belongs_to_one_fold() {
         let plan = Plan::new(1003, usize::MAX);
         assert_eq!(plan.ends, [200, 401, 601, 802, 1003]);
         assert_eq!((plan.stride(), plan.points()), (2, 502));

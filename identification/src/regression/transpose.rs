@@ -26,7 +26,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     #[test]
-    fn rows_are_those_of_the_matrix() {
+    fn transposed_rows_equal_the_matrix() {
         for count in [0, 1, 16, 37] {
             let rows: Vec<f64> = (0..5 * count).map(|k| k as f64).collect();
             assert_eq!(

@@ -107,7 +107,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     #[test]
-    fn the_factor_of_all_rows_is_that_of_one_decomposition() {
+    fn updated_factors_equal_one_decomposition() {
         let value = |i: usize, j: usize| ((i * i + 3 * j) as f64 * 0.37).sin() + 0.1 * j as f64;
         let all = DMatrix::from_fn(61, 7, |i, j| if j == 4 { 0.0 } else { value(i, j) });
         let mut r = DMatrix::zeros(7, 7);

@@ -46,7 +46,7 @@ fn unit(quantities: &[Quantity], is_single: bool) -> Option<&'static str> {
 }
 
 #[test]
-fn the_unit_that_makes_all_quantities_usual_is_named() {
+fn the_unit_that_makes_all_quantities_plausible_is_found() {
     let (sampling, acceleration, density) = (2e3, 5.0, 40.0);
     let time = |factor: f64| {
         quantities(
@@ -67,7 +67,7 @@ fn the_unit_that_makes_all_quantities_usual_is_named() {
 }
 
 #[test]
-fn usual_quantities_have_no_slip() {
+fn plausible_quantities_have_no_unit_error() {
     assert_eq!(unit(&quantities(2e3, 5.0, 40.0), false), None);
     // A quantity that no unit makes possible.
     let nowhere = [quantity(
@@ -80,14 +80,14 @@ fn usual_quantities_have_no_slip() {
 }
 
 #[test]
-fn drives_share_their_time() {
+fn time_units_are_common_to_all_drives() {
     let slow = quantities(2.0, 5e-6, 4e7);
     assert_eq!(unit(&slow, false), Some("milliseconds"));
     assert_ne!(unit(&slow, true), Some("milliseconds"));
 }
 
 #[test]
-fn a_sampling_frequency_below_the_filters_names_the_unit_of_time() {
+fn low_sampling_frequencies_reveal_the_unit_of_time() {
     let unit =
         |frequency, cutoff| time_of_sampling(frequency, cutoff).map(|unit_error| unit_error.unit);
     assert_eq!(unit(2.0, 100.0), Some("milliseconds"));

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn swapped_columns_are_named() {
+fn swapped_columns_are_detected() {
     // Positions: found by the closure.
     let swapped =
         with(|_, positions, _| positions.chunks_exact_mut(4).for_each(|row| row.swap(0, 2)));
@@ -38,7 +38,7 @@ fn swapped_columns_are_named() {
 }
 
 #[test]
-fn two_mistakes_are_not_explained_by_one() {
+fn two_faults_are_not_explained_by_one() {
     let both = |positions: &mut Vec<f64>| {
         for row in positions.chunks_exact_mut(4) {
             row.swap(0, 2);
@@ -60,7 +60,7 @@ fn two_mistakes_are_not_explained_by_one() {
 }
 
 #[test]
-fn degrees_are_named() {
+fn positions_in_degrees_are_detected() {
     let result = with(|_, positions, _| positions.iter_mut().for_each(|q| *q = q.to_degrees()));
     match result {
         Ok(result) => {
@@ -71,7 +71,7 @@ fn degrees_are_named() {
 }
 
 #[test]
-fn a_drive_of_the_wrong_sign_is_named() {
+fn a_drive_with_the_wrong_sign_is_detected() {
     let reverse =
         |values: &mut Vec<f64>| values.iter_mut().skip(3).step_by(4).for_each(|x| *x = -*x);
     let result = with(|_, _, torques| reverse(torques)).expect("an identification");
@@ -104,7 +104,7 @@ fn a_drive_of_the_wrong_sign_is_named() {
 }
 
 #[test]
-fn a_drive_of_a_wrong_gain_is_named() {
+fn a_drive_with_a_tenfold_gain_is_detected() {
     let result = with(|_, _, torques| torques.iter_mut().step_by(4).for_each(|tau| *tau *= 10.0));
     let result = result.expect("an identification");
     assert_eq!(
@@ -115,7 +115,7 @@ fn a_drive_of_a_wrong_gain_is_named() {
 }
 
 #[test]
-fn a_payload_run_that_is_labelled_unloaded_is_named() {
+fn mislabelled_payload_runs_are_detected() {
     let all = [(3, "loaded 2", false), (0, "unloaded 1", true)];
     for &(number, run, label) in by_tier([&all[..1], &all]) {
         let mut runs: Vec<Log> = RECORDS
@@ -155,7 +155,7 @@ fn a_payload_run_that_is_labelled_unloaded_is_named() {
 }
 
 #[test]
-fn late_torques_are_named_with_their_delay() {
+fn delayed_torques_are_detected_with_their_delay() {
     // One millisecond is one sample.
     let result = with(|_, positions, torques| {
         torques.truncate(torques.len() - 4);
@@ -172,7 +172,7 @@ fn late_torques_are_named_with_their_delay() {
 }
 
 #[test]
-fn a_gain_ten_percent_low_is_named() {
+fn a_gain_ten_percent_too_low_is_detected() {
     let result = with(|_, _, torques| torques.chunks_exact_mut(4).for_each(|row| row[2] *= 0.9));
     let result = result.expect("an identification");
     let mut gains = result.checks.iter();
@@ -184,7 +184,7 @@ fn a_gain_ten_percent_low_is_named() {
 }
 
 #[test]
-fn an_encoder_that_is_off_misses_the_closure() {
+fn an_encoder_offset_violates_the_closure() {
     let off = 0.2_f64.to_radians();
     let result = with(|_, positions, _| {
         positions.chunks_exact_mut(4).for_each(|row| row[0] += off);
@@ -197,7 +197,7 @@ fn an_encoder_that_is_off_misses_the_closure() {
 }
 
 #[test]
-fn one_drive_that_is_late_is_named() {
+fn a_single_delayed_drive_is_detected() {
     let result = with(|_, _, torques| {
         let own: Vec<f64> = torques[1..].iter().step_by(4).copied().collect();
         let places = torques[1..].iter_mut().step_by(4).enumerate();
@@ -211,7 +211,7 @@ fn one_drive_that_is_late_is_named() {
 }
 
 #[test]
-fn a_gain_that_falls_is_named() {
+fn a_drifting_gain_is_detected() {
     let result = with(|_, _, torques| {
         let samples = torques.len() / 4;
         let own = torques.iter_mut().step_by(4).enumerate();
@@ -225,7 +225,7 @@ fn a_gain_that_falls_is_named() {
 }
 
 #[test]
-fn labels_that_are_exchanged_are_told_by_a_mass_below_zero() {
+fn exchanged_payload_labels_are_detected_by_a_negative_mass() {
     let exchanged =
         |(record, loaded): (&Record, bool)| log(record.clone(), |_, _| {}).with_payload(loaded);
     let runs: Vec<Log> = RECORDS
@@ -243,7 +243,7 @@ fn labels_that_are_exchanged_are_told_by_a_mass_below_zero() {
 }
 
 #[test]
-fn a_payload_that_was_not_mounted_is_told() {
+fn an_unmounted_payload_is_detected() {
     let runs = [(0, false), (1, true)];
     let runs = runs.map(|(number, loaded): (usize, bool)| {
         log(RECORDS[number].clone(), |_, _| {}).with_payload(loaded)

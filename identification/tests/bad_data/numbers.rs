@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn good_data_raise_no_alarm() {
+fn faultless_data_raise_no_alarm() {
     let result = with(|_, _, _| {}).expect("an identification");
     assert_eq!(found(&result), []);
     assert!(trusted(&result, "platform projection") && trusted(&result, "actuator projection"));
@@ -30,7 +30,7 @@ fn good_data_raise_no_alarm() {
 }
 
 #[test]
-fn clipped_torques_are_named() {
+fn clipped_torques_are_detected() {
     let limit = 25.0;
     let clip = |torque: &mut f64| *torque = torque.clamp(-limit, limit);
     let result = with(|run, _, torques| {
@@ -70,7 +70,7 @@ fn clipped_torques_are_named() {
 }
 
 #[test]
-fn stuck_encoders_are_named() {
+fn stuck_encoders_are_detected() {
     // For half a second.
     let result = with(|run, positions, _| {
         if run == 1 {
@@ -115,7 +115,7 @@ fn stuck_encoders_are_named() {
 }
 
 #[test]
-fn dropped_and_repeated_samples_are_named() {
+fn dropped_and_repeated_samples_are_detected() {
     for &repeated in by_tier([&[false][..], &[false, true]]) {
         let result = with(|run, positions, torques| {
             if run == 0 {
@@ -143,7 +143,7 @@ fn dropped_and_repeated_samples_are_named() {
 }
 
 #[test]
-fn a_run_at_standstill_is_named() {
+fn a_run_at_standstill_is_detected() {
     let result = with(|run, positions, torques| {
         if run == 1 {
             let held = positions[..4].to_vec();
@@ -165,7 +165,7 @@ fn a_run_at_standstill_is_named() {
 }
 
 #[test]
-fn torques_that_were_not_recorded_are_named() {
+fn missing_and_duplicate_torque_columns_are_detected() {
     let zero = with(|_, _, torques| torques.fill(0.0)).expect("an identification");
     assert_eq!(zero.grade(), Grade::DoNotUse);
     assert_eq!(found(&zero)[0].0, CheckKind::ZeroTorque);
@@ -179,7 +179,7 @@ fn torques_that_were_not_recorded_are_named() {
 }
 
 #[test]
-fn a_few_instants_that_decide_are_named() {
+fn a_few_influential_outliers_are_detected() {
     let result = with(|number, _, torques| {
         if number != 1 {
             return;
@@ -196,7 +196,7 @@ fn a_few_instants_that_decide_are_named() {
 }
 
 #[test]
-fn a_run_that_is_too_short_may_not_be_used() {
+fn a_run_with_too_short_a_motion_is_unusable() {
     let short = |record: &Record| {
         log(record.clone(), |positions, torques| {
             let samples = positions.len() / 4;
@@ -212,7 +212,7 @@ fn a_run_that_is_too_short_may_not_be_used() {
 }
 
 #[test]
-fn cuts_of_one_log_that_overlap_are_named() {
+fn overlapping_parts_of_one_log_are_detected() {
     let run = |number: usize| log(RECORDS[number].clone(), |_, _| {});
     let cut = run(1).beginning(run(1).samples() / 2).expect("a cut");
     let runs = [run(0), run(1), cut, run(2), run(3)];

@@ -199,7 +199,7 @@ mod tests {
     use super::is_neutral;
 
     #[test]
-    fn values_are_compared_as_numbers_and_as_words() {
+    fn neutral_values_are_compared_as_numbers_or_words() {
         assert!(is_neutral("0.0 0 -0", "0"));
         assert!(is_neutral("False", "false False 0"));
         assert!(!is_neutral("0 1e-9", "0"));

@@ -96,17 +96,17 @@ fn honoured(rule: &Rule) -> impl Iterator<Item = &'static str> {
 }
 
 #[test]
-fn the_reader_of_mjcf_agrees_with_its_table() {
+fn the_mjcf_reader_agrees_with_its_table() {
     agree(&MJCF, crate::mjcf::read, &corpus::mjcf());
 }
 
 #[test]
-fn the_reader_of_urdf_agrees_with_its_table() {
+fn the_urdf_reader_agrees_with_its_table() {
     agree(&URDF, crate::urdf::read, &corpus::urdf());
 }
 
 #[test]
-fn the_reader_of_sdformat_agrees_with_its_table() {
+fn the_sdformat_reader_agrees_with_its_table() {
     agree(&SDF, crate::sdf::read, &corpus::sdf());
 }
 
@@ -125,13 +125,13 @@ fn are_in(table: &Table, source: &str) {
 }
 
 #[test]
-fn keys_of_par_and_yaml_are_read() {
+fn par_and_yaml_keys_are_read() {
     are_in(&PAR, include_str!("../par/mod.rs"));
     are_in(&YAML, include_str!("../urdf/yaml.rs"));
 }
 
 #[test]
-fn every_name_of_a_table_has_one_treatment() {
+fn every_table_entry_has_one_treatment() {
     for table in [&MJCF, &URDF, &SDF, &PAR, &YAML] {
         let mut seen = BTreeSet::new();
         for rule in table.rules {
@@ -154,7 +154,7 @@ fn every_name_of_a_table_has_one_treatment() {
 ///
 /// Each line has an element with its attributes, indented within its parent.
 #[test]
-fn the_table_of_mjcf_has_every_name_of_the_schema() {
+fn the_mjcf_table_covers_the_mujoco_schema() {
     let index = Index::new(&MJCF);
     let mut parents: Vec<(&str, Option<&Rule>)> = Vec::new();
     let mut missing = Vec::new();

@@ -107,7 +107,7 @@ fn treatment(of: Treatment) -> String {
 }
 
 #[test]
-fn pages_of_the_formats_are_those_of_the_tables() {
+fn format_pages_are_fresh() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
     let is_blessed = std::env::var_os("OVERACT_BLESS").is_some();
     for page in &PAGES {

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn blocks_bridges_and_cut_vertices_of_two_loops_and_a_tail() {
+    fn blocks_bridges_and_cut_vertices_are_found() {
         // Triangle 0 1 2, double edge 2 3, tail 3 4.
         let found = blocks(5, &[[0, 1], [1, 2], [2, 0], [2, 3], [3, 2], [3, 4]]);
         assert_eq!(found.is_bridge, [false, false, false, false, false, true]);
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn the_search_of_a_long_chain_needs_no_deep_stack() {
+    fn block_search_does_not_overflow_the_stack() {
         let ends: Vec<[usize; 2]> = (0..100_000).map(|at| [at, at + 1]).collect();
         let found = blocks(100_001, &ends);
         assert!(found.is_bridge.iter().all(|is_bridge| *is_bridge));

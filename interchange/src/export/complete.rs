@@ -144,14 +144,14 @@ mod tests {
     use super::{completed, parameters, pseudo_inertia};
 
     #[test]
-    fn a_pseudo_inertia_has_its_parameters() {
+    fn pseudo_inertia_and_parameters_round_trip() {
         let values = [0.3, 0.01, -0.02, 0.4, 0.03, 0.5, 0.1, -0.2, 0.3, 2.0];
         let again = parameters(&pseudo_inertia(&values));
         assert!(values.iter().zip(again).all(|(a, b)| (a - b).abs() < 1e-15));
     }
 
     #[test]
-    fn what_is_open_makes_a_body_of_the_rest() {
+    fn undetermined_parameters_are_completed_to_a_valid_body() {
         // A moment about z that exceeds the sum of the file's other two moments, which the motion
         // does not determine.
         let values = [1e-3, 0.0, 0.0, 1e-3, 0.0, 5e-3, 0.02, 0.01, 0.0, 0.05];

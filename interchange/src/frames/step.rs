@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn any_frame_is_reached_by_six_constants() {
+    fn six_constants_reach_any_frame() {
         let mut seed = 1_u64;
         let mut next = || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_give_their_rotation() {
+    fn angles_reproduce_their_rotation() {
         for [rx, ry, rz] in [
             [0.3, -0.2, 2.0],
             [0.5, std::f64::consts::FRAC_PI_2, 0.0],

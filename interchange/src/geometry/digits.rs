@@ -77,7 +77,7 @@ mod tests {
     use super::{angle, decimal, fine};
 
     #[test]
-    fn decimals_come_back_from_arithmetic() {
+    fn rounding_errors_are_removed_from_decimals() {
         assert_eq!(decimal(0.1 + 0.2), "0.3");
         assert_eq!(decimal(1.0 - 0.88), "0.12");
         assert_eq!(decimal(-2.775e-17), "0");
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_are_told_in_degrees_where_they_are_round() {
+    fn round_angles_are_written_in_degrees() {
         assert_eq!(angle(-std::f64::consts::FRAC_PI_2), "-90 deg");
         assert_eq!(angle(37.5_f64.to_radians()), "37.5 deg");
         assert_eq!(angle(0.45), "0.45");

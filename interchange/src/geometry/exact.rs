@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn eight_digits_of_a_right_angle_are_one() {
+    fn rounded_right_angles_become_exact() {
         assert_eq!(angle(written(FRAC_PI_2, 7)), FRAC_PI_2);
         assert!((angle(written(FRAC_PI_6, 7)) - FRAC_PI_6).abs() < 1e-15);
         let coarse = written(FRAC_PI_2, 4);
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn directions_of_huge_vectors_are_those_of_small_ones() {
+    fn directions_of_huge_vectors_do_not_overflow() {
         for size in [1.0, 1e100, 1e155, 1e160, 1e308] {
             let up = direction([0.0, size, 0.0]).expect("a direction");
             assert_eq!([up.x, up.y, up.z], [0.0, 1.0, 0.0], "{size:e}");

@@ -34,7 +34,7 @@ fn assert_inertia(model: &Model, body: usize, expected: [f64; 10]) {
 }
 
 #[test]
-fn inertias_of_primitive_geoms_are_those_of_mujoco() {
+fn primitive_geom_inertias_match_mujoco() {
     for (geoms, expected) in [
         (
             "<geom size='0.1' pos='0.1 0 0'/>",
@@ -153,7 +153,7 @@ fn inertias_of_primitive_geoms_are_those_of_mujoco() {
 }
 
 #[test]
-fn bodies_of_meshes_have_inertias_without_values() {
+fn mesh_bodies_without_inertial_have_unknown_inertia() {
     let model = read(
         "<mujoco><worldbody><body><joint/><geom type='mesh' mesh='m'/></body><body><joint/>\
          <inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/><geom type='mesh' mesh='m'/></body></worldbody></mujoco>",
@@ -186,12 +186,12 @@ fn assert_spring(model: &Model, stiffness: f64, damping: f64) {
 }
 
 #[test]
-fn springs_follow_from_time_constants_as_in_mujoco() {
+fn springdamper_time_constants_match_mujoco() {
     assert_spring(&adjusted(""), 3.2041419645219538, 0.628011825046303);
 }
 
 #[test]
-fn bounds_and_balance_of_inertias_are_those_of_mujoco() {
+fn inertia_bounds_and_balancing_match_mujoco() {
     let model = adjusted("boundmass='1.5' boundinertia='0.015'");
     let first = [
         1.5,
@@ -228,7 +228,7 @@ fn bounds_and_balance_of_inertias_are_those_of_mujoco() {
 }
 
 #[test]
-fn the_total_mass_scales_all_bodies_as_in_mujoco() {
+fn settotalmass_scales_bodies_as_in_mujoco() {
     let model = adjusted("boundmass='1.5' settotalmass='8'");
     assert_inertia(
         &model,
@@ -247,7 +247,7 @@ fn the_total_mass_scales_all_bodies_as_in_mujoco() {
 }
 
 #[test]
-fn defaults_of_one_actuator_are_those_of_all_and_equalities_share_theirs() {
+fn actuator_and_equality_defaults_are_shared() {
     let model = read(
         "<mujoco><default><motor gear='5' armature='0.1'/><general damping='2'/><equality active='false'/></default>\
          <worldbody><body><joint name='j'/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/><body><joint name='k'/>\
@@ -262,7 +262,7 @@ fn defaults_of_one_actuator_are_those_of_all_and_equalities_share_theirs() {
 }
 
 #[test]
-fn joints_and_inertias_are_in_the_frame_of_their_body() {
+fn joints_and_inertias_are_expressed_in_the_body_frame() {
     let model = read(
         "<mujoco><worldbody><body><frame pos='0.1 0 0' euler='90 0 0'><joint name='j' axis='0 1 0'/>\
          <inertial pos='0 0 0.2' mass='1' diaginertia='1 2 3'/></frame></body></worldbody></mujoco>",
@@ -344,7 +344,7 @@ fn with_mesh(asset: &str, geom: &str) -> Model {
 }
 
 #[test]
-fn inertias_of_meshes_are_those_of_mujoco() {
+fn mesh_inertias_match_mujoco() {
     // MuJoCo keeps the corners in single precision.
     let is_near = |found: f64, expected: f64, size: f64| (found - expected).abs() < 3e-7 * size;
     for (asset, geom, expected) in [
@@ -419,7 +419,7 @@ fn inertias_of_meshes_are_those_of_mujoco() {
 }
 
 #[test]
-fn meshes_are_moved_by_their_reference_pose() {
+fn meshes_are_placed_by_their_reference_pose() {
     let asset = "inertia='exact' scale='2 2 -2' refpos='0.1 0 0' refquat='0.9 0.1 0.2 0.3'";
     let own = with_mesh(asset, "mass='3' pos='1 2 3' euler='0.3 0 0'").bodies[1].inertia;
     let own = own.expect("an inertia");
@@ -442,7 +442,7 @@ fn meshes_are_moved_by_their_reference_pose() {
 }
 
 #[test]
-fn a_mesh_without_a_file_leaves_the_mass_unknown() {
+fn a_mesh_without_a_file_has_unknown_inertia() {
     for asset in ["inertia='convex'", "name='v'", "builtin='sphere'"] {
         let model = with_mesh(asset, "");
         assert!(model.bodies[1].inertia.is_none(), "{asset}");

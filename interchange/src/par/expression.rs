@@ -187,7 +187,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     #[test]
-    fn expressions_have_values() {
+    fn par_expressions_are_evaluated() {
         let given = BTreeMap::from([("D3".to_owned(), 0.5), ("RL4".to_owned(), 2.0)]);
         let of = |text: &str| value(text, &given);
         assert_eq!(of("-pi/2"), Ok(-std::f64::consts::FRAC_PI_2));

@@ -42,7 +42,7 @@ mod tests {
     use super::Names;
 
     #[test]
-    fn names_are_words_of_their_own() {
+    fn imported_names_become_unique_identifiers() {
         let mut names = Names::default();
         assert_eq!(names.unique("toe_b_1/2"), "toe_b_1_2");
         assert_eq!(names.unique("toe_b_1\\2"), "toe_b_1_2_2");

@@ -360,7 +360,7 @@ mod tests {
     use super::{Value, universal_axes, value};
 
     #[test]
-    fn universal_joints_have_two_axes() {
+    fn universal_joint_axes_are_parsed() {
         assert_eq!(universal_axes("CARDAN"), Some(['X', 'Y']));
         assert_eq!(universal_axes("UJOINT_ZY"), Some(['Z', 'Y']));
         for wrong in ["UJOINT_XX", "UJOINT_X", "UJOINT_XYZ", "UJOINT_AB", "HINGE"] {
@@ -369,7 +369,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_are_read_in_brackets_and_behind_hyphens() {
+    fn flow_and_block_lists_are_parsed() {
         let word = |text: &str| Value::Word(text.to_owned());
         let pair = Value::List(vec![word("a"), word("b c")]);
         assert_eq!(value(" ['a', \"b c\"]", 0), Some(pair.clone()));

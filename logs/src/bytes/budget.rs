@@ -72,7 +72,7 @@ mod tests {
     use super::{Budget, UNPACKED};
 
     #[test]
-    fn a_budget_ends_before_the_input_is_read() {
+    fn the_unpacking_budget_limits_endless_input() {
         let mut budget = Budget::of_file(&[]);
         assert!(budget.take(UNPACKED - 1).is_ok());
         assert_eq!(budget.unpack(&[7_u8][..]), Ok(vec![7]));

@@ -123,7 +123,7 @@ mod tests {
     use crate::samples::Samples;
 
     #[test]
-    fn samples_come_back_from_any_place() {
+    fn samples_are_read_back_from_any_offset() {
         let rows = |first: usize, count: usize, scale: f64| -> Vec<f64> {
             let values = 2 * first..2 * (first + count);
             values.map(|k| scale * k as f64).collect()

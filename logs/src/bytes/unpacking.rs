@@ -65,13 +65,13 @@ mod tests {
     }
 
     #[test]
-    fn all_members_are_unpacked() {
+    fn all_gzip_members_are_unpacked() {
         let members = [packed(b"t,q\n"), packed(b"0,1\n")].concat();
         assert_eq!(unpacked(&members), Ok(b"t,q\n0,1\n".to_vec()));
     }
 
     #[test]
-    fn truncated_and_damaged_files_are_refused() {
+    fn truncated_and_damaged_files_are_rejected() {
         let text: Vec<u8> = (0..2000_u32).flat_map(u32::to_le_bytes).collect();
         let whole = packed(&text);
         for (at, length) in [(0, 5), (0, whole.len() / 2), (0, whole.len() - 3)] {

@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn first_bytes_tell_the_format() {
+    fn the_format_is_detected_from_the_first_bytes() {
         assert_eq!(name(b""), Some("text (CSV)"));
         assert_eq!(name("time;q\u{e9}\n".as_bytes()), Some("text (CSV)"));
         for json in [

@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn dates_and_times_of_day_are_seconds() {
+    fn dates_and_times_of_day_become_seconds() {
         // 2026-03-01 is day 20513 since 1970.
         for cell in [
             "2026-03-01T10:00:00.5Z",
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn other_cells_are_no_times() {
+    fn cells_that_are_not_times_are_rejected() {
         for cell in [
             "",
             "1.5",
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn times_of_day_go_on_at_midnight() {
+    fn times_of_day_continue_past_midnight() {
         let mut midnights = Midnights::default();
         let times = [86_399.0, 86_399.5, 0.0, 0.5].map(|time| midnights.next(time));
         assert_eq!(times, [86_399.0, 86_399.5, 86_400.0, 86_400.5]);

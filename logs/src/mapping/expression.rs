@@ -388,7 +388,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_those_of_mathematics() {
+    fn expressions_are_evaluated_with_usual_precedence() {
         let cases = [
             ("1 + 2*3 - 4/8", 6.5),
             ("-a^2", -4.0),
@@ -415,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said() {
+    fn invalid_expressions_are_rejected_with_the_reason() {
         let cases = [
             ("", "something is missing at the end"),
             ("a +", "something is missing at the end"),

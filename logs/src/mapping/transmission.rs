@@ -62,7 +62,7 @@ mod tests {
     use super::{Samples, Transmission};
 
     #[test]
-    fn power_is_the_same_in_both_coordinates() {
+    fn power_is_equal_in_motor_and_joint_coordinates() {
         // The second motor moves by the sum of both joints.
         let rows = [vec![45.0, 0.0], vec![-32.0, -32.0]];
         let both = Transmission::new(&rows, 2).expect("a regular matrix");
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn motors_that_do_not_determine_the_joints_are_refused() {
+    fn singular_transmissions_are_rejected() {
         let singular = [vec![1.0, 1.0], vec![2.0, 2.0]];
         assert!(Transmission::new(&singular, 2).is_err());
         assert!(Transmission::new(&[vec![1.0]], 2).is_err());

@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn cuts_of_one_log_are_known_by_what_they_share() {
+    fn overlapping_parts_of_one_log_are_recognised() {
         let shared = marks(0..3000).shared(&marks(2000..4000)).expect("shared");
         assert_eq!(shared.samples, 1000);
         assert!((shared.part - 0.5).abs() < 1e-12);
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_that_share_a_rest_or_nothing_are_two() {
+    fn runs_that_share_only_a_standstill_do_not_overlap() {
         assert_eq!(marks(0..3000).shared(&marks(3000..6000)), None);
         let resting = |first: usize| {
             let mut marks = marks(first..first + 1000);

@@ -86,7 +86,7 @@ mod tests {
     use super::flat_part;
 
     #[test]
-    fn only_peaks_that_are_cut_off_are_flat() {
+    fn only_clipped_peaks_are_flat() {
         let signal = |limit: f64, noise: f64| -> Vec<f64> {
             (0..1000)
                 .map(|k| {

@@ -128,7 +128,7 @@ mod tests {
     use super::Roughness;
 
     #[test]
-    fn noise_is_told_from_motion() {
+    fn noise_is_distinguished_from_motion() {
         let mut roughness = Roughness::new(3);
         let mut state = 1_u64;
         let mut noise = || {
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_signal_in_other_units_is_the_same_signal() {
+    fn scaled_copies_of_a_signal_are_recognised() {
         let mut roughness = Roughness::new(6);
         for k in 0..5_000 {
             let phase = 1e-3 * f64::from(k);

@@ -26,7 +26,7 @@ fn swing(time: f64) -> f64 {
 }
 
 #[test]
-fn both_ends_and_the_part_of_the_time_are_told() {
+fn clipping_limits_and_clipped_time_are_reported() {
     let found = suspicions(5000, |time| swing(time).clamp(-1.5, 1.0));
     let [one] = &found[..] else {
         panic!("one suspicion, not {found:?}");
@@ -53,7 +53,7 @@ fn peaks_of_a_quantised_torque_are_not_clipped() {
 }
 
 #[test]
-fn of_several_rests_the_one_in_which_others_move_most_is_told() {
+fn the_standstill_with_most_motion_of_others_is_reported() {
     // The second actuator reverses at 0.7 s and hardly moves then.
     let others = |time: f64| (TAU * 2.0 / 3.0 * (time - 0.7)).cos();
     let held = |time: f64| match time {
@@ -101,7 +101,7 @@ fn suspicions_of_first(position: impl Fn(f64) -> f64) -> Vec<Suspicion> {
 }
 
 #[test]
-fn a_reading_that_never_changes_or_stops_for_good_is_stuck() {
+fn constant_and_permanently_stopped_readings_are_stuck() {
     let stops = |time: f64| -(1.0 - (time.min(2.0) / 2.0)).powi(2);
     let never = |_: f64| 0.3;
     for position in [&never as &dyn Fn(f64) -> f64, &stops] {
@@ -114,7 +114,7 @@ fn a_reading_that_never_changes_or_stops_for_good_is_stuck() {
 }
 
 #[test]
-fn a_drive_that_rests_where_it_reverses_is_not_stuck() {
+fn a_drive_at_rest_while_reversing_is_not_stuck() {
     // It approaches the point of reversal gently, rests for 0.2 s, and leaves it gently.
     let pause = |time: f64| match time {
         ..1.8 => -(1.8 - time).powi(2),
@@ -125,7 +125,7 @@ fn a_drive_that_rests_where_it_reverses_is_not_stuck() {
 }
 
 #[test]
-fn a_torque_that_freezes_while_its_actuator_moves_is_told() {
+fn a_torque_frozen_during_motion_is_reported() {
     let frozen = |time: f64| {
         if (2.0..3.0).contains(&time) {
             swing(2.0)
@@ -160,7 +160,7 @@ fn a_torque_that_freezes_while_its_actuator_moves_is_told() {
 }
 
 #[test]
-fn torques_that_are_held_between_samples_are_not_frozen() {
+fn torques_held_between_samples_are_not_frozen() {
     // A log at 500 Hz of a torque that changes every 50 ms, or by large quanta.
     let held = |time: f64| swing((time * 20.0).floor() / 20.0);
     assert_eq!(suspicions(5000, held), []);

@@ -27,7 +27,7 @@ fn run(period: f64, samples: usize, fresh: f64, repeated: f64) -> Log {
 }
 
 #[test]
-fn the_period_is_found_and_the_correlation_of_the_errors_is_told() {
+fn the_period_and_the_error_correlation_are_estimated() {
     for [fresh, repeated, expected] in [[1e-4, 0.0, 0.0], [0.0, 1e-4, 1.0], [1e-4, 1e-4, 0.5]] {
         let log = run(1250.0, 8000, fresh, repeated);
         let found = periods(&log, None).expect("periodic");
@@ -40,7 +40,7 @@ fn the_period_is_found_and_the_correlation_of_the_errors_is_told() {
 }
 
 #[test]
-fn periods_without_a_whole_number_of_samples_are_taken_together() {
+fn fractional_periods_are_combined_to_whole_samples() {
     let log = run(833.0 + 1.0 / 3.0, 10_000, 1e-5, 0.0);
     for period in [None, Some((2500.0 / 3.0) * 1e-3)] {
         let found = periods(&log, period).expect("periodic");
@@ -49,7 +49,7 @@ fn periods_without_a_whole_number_of_samples_are_taken_together() {
 }
 
 #[test]
-fn the_others_are_the_mean_of_the_other_periods() {
+fn the_instrument_is_the_mean_of_the_other_periods() {
     let log = run(500.0, 1700, 1e-3, 0.0);
     let (own, torques) = log.load().expect("in memory");
     let others = log.others(periods(&log, None).expect("periodic"));
@@ -63,21 +63,21 @@ fn the_others_are_the_mean_of_the_other_periods() {
 }
 
 #[test]
-fn what_does_not_repeat_itself_is_no_period() {
-    let said = |period: f64, given: Option<f64>| {
+fn invalid_periods_are_rejected() {
+    let message = |period: f64, given: Option<f64>| {
         let log = run(period, 3000, 1e-4, 0.0);
         let error = periods(&log, given).expect_err("no period");
         error.to_string()
     };
-    assert!(said(2000.0, None).contains("no period"));
-    assert!(said(2000.0, Some(2.0)).contains("fewer than two periods"));
-    assert!(said(1000.0, Some(0.9)).contains("does not repeat after 0.9"));
-    assert!(said(1000.0, Some(f64::NAN)).contains("not possible"));
-    assert!(said(1000.0, Some(0.98765)).contains("whole number of samples"));
+    assert!(message(2000.0, None).contains("no period"));
+    assert!(message(2000.0, Some(2.0)).contains("fewer than two periods"));
+    assert!(message(1000.0, Some(0.9)).contains("does not repeat after 0.9"));
+    assert!(message(1000.0, Some(f64::NAN)).contains("not possible"));
+    assert!(message(1000.0, Some(0.98765)).contains("whole number of samples"));
 }
 
 #[test]
-fn a_period_that_does_not_fit_into_memory_is_refused() {
+fn a_period_that_exceeds_the_memory_limit_is_rejected() {
     let samples = super::LARGEST_PERIOD / 2 + 1000;
     let numbers = vec![0.0; 2 * 2 * samples];
     let log = Log::new("run", 1000.0, 2, numbers.clone(), numbers, false).expect("a run");
@@ -86,7 +86,7 @@ fn a_period_that_does_not_fit_into_memory_is_refused() {
 }
 
 #[test]
-fn motions_that_return_are_found_within_a_run_and_from_run_to_run() {
+fn repeated_motions_are_found_within_and_between_runs() {
     let periodic = run(500.0, 1700, 1e-4, 0.0);
     let other = run(400.0, 1700, 1e-4, 0.0);
     // Less than two periods each.
@@ -114,7 +114,7 @@ fn motions_that_return_are_found_within_a_run_and_from_run_to_run() {
 }
 
 #[test]
-fn runs_of_one_motion_with_different_payloads_are_apart() {
+fn runs_of_one_motion_with_different_payloads_are_not_combined() {
     let empty = run(1500.0, 1700, 1e-4, 0.0);
     let (positions, torques) = empty.load().expect("in memory");
     let loaded = Log::new("loaded", 1000.0, 2, positions, torques, true).expect("a run");

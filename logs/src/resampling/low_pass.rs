@@ -61,7 +61,7 @@ mod tests {
     use super::{HALF_LENGTH, Kernel};
 
     #[test]
-    fn it_passes_slow_motion_and_damps_the_rest() {
+    fn the_kernel_passes_low_and_stops_high_frequencies() {
         let kernel = Kernel::new();
         // Ten samples in a step of the new rate.
         let taps: Vec<f64> = (-130..=130).map(|k| f64::from(k) / 10.0).collect();

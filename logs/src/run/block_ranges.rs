@@ -176,14 +176,14 @@ mod tests {
     }
 
     #[test]
-    fn motion_and_short_rests_are_no_standstills() {
+    fn motion_and_short_rests_are_not_long_standstills() {
         assert!(found(6000, 0.0, |_| false).is_empty());
         assert!(found(6000, 1e-3, |_| false).is_empty());
         assert!(found(6000, 1e-4, |time| (20.0..20.8).contains(&time)).is_empty());
     }
 
     #[test]
-    fn blocks_of_long_runs_have_more_samples() {
+    fn blocks_grow_with_the_length_of_the_run() {
         let mut ranges = BlockRanges::new(1);
         for sample in 0..1_000_000 {
             let own = f64::from(sample - 400_000).clamp(0.0, 200_000.0);

@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn times_of_32_bits_are_uniform() {
+    fn rounded_32_bit_times_are_accepted_as_uniform() {
         let single = |time: f64| f64::from(time as f32);
         let found = frequency(100.0, single).expect("uniform");
         assert!((found - 1000.0).abs() < 0.01, "{found}");
@@ -211,33 +211,39 @@ mod tests {
     }
 
     #[test]
-    fn a_sample_that_is_missing_is_told_of_times_of_32_bits() {
+    fn a_missing_sample_is_detected_in_32_bit_times() {
         let lost = |time: f64| f64::from((if time > 103.0 { time + 1e-3 } else { time }) as f32);
         assert!(frequency(100.0, lost).is_err());
     }
 
     #[test]
-    fn times_that_32_bits_do_not_tell_apart_are_told_as_such() {
-        let told = frequency(9000.0, |time| f64::from(time as f32));
-        let told = told.expect_err("too coarse").to_string();
-        assert!(told.contains("32-bit numbers"), "{told}");
+    fn times_too_coarse_in_32_bits_are_rejected() {
+        let message = frequency(9000.0, |time| f64::from(time as f32));
+        let message = message.expect_err("too coarse").to_string();
+        assert!(message.contains("32-bit numbers"), "{message}");
     }
 
     #[test]
-    fn times_of_whole_seconds_are_told_as_such() {
-        let told = frequency(100.0, f64::floor).expect_err("too coarse");
-        let told = told.to_string();
-        assert!(told.contains("the time of the sample before"), "{told}");
-        assert!(told.contains("`sampling`"), "{told}");
+    fn times_in_whole_seconds_are_rejected() {
+        let message = frequency(100.0, f64::floor).expect_err("too coarse");
+        let message = message.to_string();
+        assert!(
+            message.contains("the time of the sample before"),
+            "{message}"
+        );
+        assert!(message.contains("`sampling`"), "{message}");
     }
 
     #[test]
-    fn the_help_names_the_rate_of_the_log() {
+    fn the_help_suggests_the_sampling_rate_of_the_log() {
         let late = |time: f64| if time > 2.0 { time + 3e-4 } else { time };
         for (scale, rate) in [(1.0, "1 kHz"), (4.0, "250 Hz"), (0.1, "10 kHz")] {
-            let told = frequency(0.0, |time| scale * late(time)).expect_err("not uniform");
-            let told = told.to_string();
-            assert!(told.contains(&format!("resample = \"{rate}\"")), "{told}");
+            let message = frequency(0.0, |time| scale * late(time)).expect_err("not uniform");
+            let message = message.to_string();
+            assert!(
+                message.contains(&format!("resample = \"{rate}\"")),
+                "{message}"
+            );
         }
     }
 }

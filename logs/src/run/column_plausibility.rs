@@ -301,37 +301,38 @@ mod tests {
     }
 
     #[test]
-    fn columns_are_what_they_are_called() {
+    fn plausible_columns_are_accepted() {
         assert_eq!(run(|own, _| own), Ok(()));
         // A robot at rest allows no conclusion.
         assert_eq!(run(|_, _| [0.25, 3.0, 0.0]), Ok(()));
     }
 
     #[test]
-    fn columns_that_are_something_else_are_told() {
-        let told = |change: &dyn Fn([f64; 3], usize) -> [f64; 3]| run(change).expect_err("a slip");
-        let text = told(&|[q, t, _], _| [t, q, 0.0]);
+    fn exchanged_and_dependent_columns_are_reported() {
+        let rejection =
+            |change: &dyn Fn([f64; 3], usize) -> [f64; 3]| run(change).expect_err("a slip");
+        let text = rejection(&|[q, t, _], _| [t, q, 0.0]);
         assert!(
             text.contains("positions and torques look exchanged"),
             "{text}"
         );
         let text =
-            told(&|[q, t, v], actuator| [q, if actuator == 0 { 2.0 * q + 1.0 } else { t }, v]);
+            rejection(&|[q, t, v], actuator| [q, if actuator == 0 { 2.0 * q + 1.0 } else { t }, v]);
         assert!(
             text.starts_with("run: torque and position are the same column: joint 1\n"),
             "{text}"
         );
-        let text = told(&|[q, t, _], _| [q, t, q]);
+        let text = rejection(&|[q, t, _], _| [q, t, q]);
         assert!(
             text.starts_with("run: velocity and position are the same column: joint 1, `leg2`\n"),
             "{text}"
         );
-        let text = told(&|[q, t, v], _| [q, t, -57.3 * v]);
+        let text = rejection(&|[q, t, v], _| [q, t, -57.3 * v]);
         assert!(
             text.contains("the velocities are -57.3 times what the positions give"),
             "{text}"
         );
-        let text = told(&|[q, t, _], _| [q, t, t * t]);
+        let text = rejection(&|[q, t, _], _| [q, t, t * t]);
         assert!(
             text.contains(
                 "the velocities are not the derivatives of the positions: joint 1, `leg2`"

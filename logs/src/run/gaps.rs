@@ -380,7 +380,7 @@ mod tests {
     }
 
     #[test]
-    fn overlapping_gaps_are_united() {
+    fn overlapping_gaps_are_merged() {
         let gaps = [gap(5.0, 7.0), gap(1.0, 2.0), gap(6.0, 8.0), gap(8.0, 9.0)];
         assert_eq!(
             united(gaps.into_iter()),
@@ -389,14 +389,14 @@ mod tests {
     }
 
     #[test]
-    fn bounds_have_few_decimals_and_lie_in_the_gap() {
+    fn gap_bounds_have_few_decimals_and_lie_in_the_gap() {
         assert_eq!(gap(11.9, 13.0).bound(0.0), "12");
         assert_eq!(gap(11.92, 11.98).bound(0.0), "11.95");
         assert_eq!(gap(1.7e9 + 0.2, 1.7e9 + 0.4).bound(1.7e9), "0.3");
     }
 
     #[test]
-    fn rows_inside_a_gap_belong_to_no_stretch() {
+    fn rows_inside_a_gap_are_excluded() {
         let gaps = [gap(1.0, 3.0)];
         let mut search = Search::new(&gaps);
         for (number, time) in [0.0, 1.0, f64::NAN, 1.5, 2.9, 3.0, 4.0]

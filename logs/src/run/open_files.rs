@@ -287,7 +287,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn without_a_temporary_file_the_text_is_read_again() {
+    fn the_text_is_read_again_without_a_temporary_file() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("log.csv");
         let lines: String = (0..100).map(|k| format!("{k},{}\n", 2 * k)).collect();

@@ -276,7 +276,7 @@ mod tests {
     use super::{Search, TimeRange};
 
     #[test]
-    fn ranges_are_parsed_or_refused() {
+    fn time_ranges_are_parsed_or_rejected() {
         let range = |start, end| Ok(TimeRange { start, end });
         assert_eq!(TimeRange::parse("10:60"), range(10.0, 60.0));
         assert_eq!(TimeRange::parse(" 1e1 : "), range(10.0, f64::INFINITY));
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_of_a_range_are_found() {
+    fn rows_of_a_time_range_are_found() {
         const NONE: f64 = f64::NAN;
         assert_eq!(found(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]), Some((2, 2)));
         assert_eq!(found(&[0.0, NONE, 2.0, NONE, 3.0, NONE, 4.0]), Some((2, 3)));

@@ -58,7 +58,7 @@ fn turns(sample: usize) -> f64 {
 }
 
 #[test]
-fn wrapped_angles_are_found_and_unwrapped_in_any_unit() {
+fn wrapped_angles_are_detected_and_unwrapped_in_any_unit() {
     for (turn, low) in [
         (TAU, -0.5 * TAU),
         (TAU, 0.0),
@@ -78,22 +78,22 @@ fn wrapped_angles_are_found_and_unwrapped_in_any_unit() {
 }
 
 #[test]
-fn an_angle_that_shakes_around_the_end_of_its_turn_wraps_back_and_forth() {
+fn angles_oscillating_around_the_wrap_are_unwrapped() {
     let mut noise = noise();
-    let shaken: Vec<f64> = (0..2000)
+    let oscillating: Vec<f64> = (0..2000)
         .map(|sample| 0.02 * (0.01 * sample as f64).sin() + 0.01 * noise() + 0.5 * TAU)
         .collect();
-    let signal: Vec<f64> = shaken
+    let signal: Vec<f64> = oscillating
         .iter()
         .map(|angle| wrapped(*angle, -0.5 * TAU, TAU))
         .collect();
     assert_eq!(found(&signal, &[TAU]), Some((TAU, None)));
-    let error = error(&signal, TAU, |sample| shaken[sample]);
+    let error = error(&signal, TAU, |sample| oscillating[sample]);
     assert!(error < 1e-9, "{error}");
 }
 
 #[test]
-fn counters_that_overflow_are_told_from_other_encoders() {
+fn overflowing_counters_are_distinguished_by_their_period() {
     let counts = |turn: f64| -> Vec<f64> {
         let count = |sample| wrapped((turn * turns(sample)).round(), 0.0, turn);
         (0..2000).map(count).collect()
@@ -105,7 +105,7 @@ fn counters_that_overflow_are_told_from_other_encoders() {
 }
 
 #[test]
-fn lost_samples_and_turns_that_are_counted_are_no_wraps() {
+fn lost_samples_and_counted_turns_are_not_unwrapped() {
     // Lost samples: a jump in a motion of less than a turn.
     let arc = |sample: usize| 2.9 * (0.01 * sample as f64).sin();
     let lost: Vec<f64> = (0..100).chain(420..2000).map(arc).collect();
@@ -121,7 +121,7 @@ fn lost_samples_and_turns_that_are_counted_are_no_wraps() {
 }
 
 #[test]
-fn the_direction_of_half_a_turn_between_two_samples_is_not_known() {
+fn half_turns_between_samples_are_reported_as_ambiguous() {
     let slow = |sample: usize| TAU * 1e-4 * (sample as f64).powi(2);
     let signal = |samples: usize| -> Vec<f64> {
         (0..samples)

@@ -96,7 +96,7 @@ mod tests {
     use super::{base64, within_script};
 
     #[test]
-    fn bytes_as_text() {
+    fn base64_matches_known_values() {
         let known = [
             ("", ""),
             ("f", "Zg=="),
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn no_text_ends_a_script() {
+    fn script_content_cannot_end_the_script_element() {
         assert!(!within_script("const a = \"</script><!--\";").contains("</script"));
     }
 }

@@ -120,7 +120,7 @@ mod tests {
     use super::base64;
 
     #[test]
-    fn base64_has_its_published_values() {
+    fn base64_matches_published_values() {
         // RFC 4648, section 10.
         for (text, expected) in [
             ("", ""),

@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn ticks_are_round_and_hold_the_data() {
+    fn ticks_are_round_and_span_the_data() {
         let axis = Axis::linear("x");
         assert_eq!(
             labels(&axis, &[-0.31, 0.42]),
@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn strange_data_still_have_a_scale() {
+    fn degenerate_data_have_a_finite_scale() {
         for axis in [Axis::linear("x"), Axis::logarithmic("x")] {
             for values in [
                 vec![],
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn values_lie_where_they_belong() {
+    fn values_are_mapped_to_axis_positions() {
         let linear = Axis::linear("x").scale([0.0, 10.0].into_iter(), 0.0, 100.0, 5, true);
         assert_eq!(linear.at(2.5), Some(25.0));
         let log = Axis::logarithmic("x").scale([1.0, 100.0].into_iter(), 0.0, 100.0, 5, false);

@@ -419,7 +419,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chart_is_well_formed_and_keeps_its_lines() {
+    fn a_chart_is_well_formed_and_skips_missing_points() {
         let svg = chart(vec![(0.0, 1.0), (1.0, 10.0), (2.0, f64::NAN), (3.0, 4.0)]).svg();
         let document = roxmltree::Document::parse(&svg).expect("XML");
         let path = document
@@ -438,7 +438,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_thresholds_overlap_neither_each_other_nor_the_title() {
+    fn threshold_labels_do_not_overlap() {
         let mut chart = chart(vec![(0.0, 1.0), (1.0, 1000.0)]);
         let close = [999.0, 10.0, 10.5, 10.9, 11.0];
         chart.rules = close.map(|value| Rule::horizontal(value, "name")).to_vec();
@@ -462,7 +462,7 @@ mod tests {
     }
 
     #[test]
-    fn a_title_that_leaves_no_room_for_the_unit_has_a_line_of_its_own() {
+    fn long_titles_are_placed_above_the_unit() {
         let mut chart = chart(vec![(0.0, 1.0), (1.0, 10.0)]);
         assert!(chart.svg().contains("viewBox=\"0 0 400 230\""));
         chart.title = String::from("Residual of the validation run and of others");

@@ -169,7 +169,7 @@ mod tests {
     use super::{Axis, Bar, Forest, Look};
 
     #[test]
-    fn a_forest_is_well_formed_whatever_the_values() {
+    fn forest_plots_with_extreme_values_are_well_formed() {
         let bar = |value: f64, half: f64| Bar {
             look: Look::First,
             value,

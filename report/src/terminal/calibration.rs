@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_changed_and_what_is_not_is_told() {
+    fn changed_and_held_parameters_are_printed() {
         let offset = CalibratedParameter {
             name: "offset_leg2".to_owned(),
             unit: "rad",

@@ -30,7 +30,7 @@ mod tests {
     use overact_identification::DriveGain;
 
     #[test]
-    fn a_wrong_gain_is_pointed_out() {
+    fn wrong_gains_are_marked() {
         let gain = |actuator: &str, factor| DriveGain {
             actuator: actuator.to_owned(),
             factor,

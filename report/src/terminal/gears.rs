@@ -35,7 +35,7 @@ mod tests {
     use overact_identification::{DriveGearFriction, GearCoefficient};
 
     #[test]
-    fn a_coefficient_that_is_not_determined_has_no_numbers() {
+    fn undetermined_coefficients_are_printed_as_dashes() {
         let drive = |actuator: &str, coefficient| DriveGearFriction {
             actuator: actuator.to_owned(),
             coefficient,

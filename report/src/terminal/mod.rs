@@ -354,7 +354,7 @@ mod tests {
     use super::coefficient;
 
     #[test]
-    fn coefficients_are_recognised() {
+    fn coefficients_are_printed_as_simple_fractions() {
         assert_eq!(coefficient(0.28 * 0.28), "0.0784");
         assert_eq!(coefficient(1.0 / 0.28), "(25/7)");
         assert_eq!(coefficient(0.11 * 0.11 / 0.28), "(121/2800)");

@@ -39,7 +39,7 @@ mod tests {
     use overact_identification::MotorParameter;
 
     #[test]
-    fn each_parameter_has_a_line() {
+    fn each_motor_parameter_has_a_line() {
         assert_eq!(motors(&[]), "");
         let one = |name: &str, value| MotorParameter {
             motor: String::from("m6"),

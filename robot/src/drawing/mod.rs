@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_is_turned_keeps_sheet_and_parts() {
+    fn rotated_drawings_keep_sheet_and_elements() {
         for text in [
             include_str!("../../../robots/dualv.toml"),
             include_str!("../../../robots/hexapod.toml"),

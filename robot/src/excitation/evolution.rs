@@ -161,7 +161,7 @@ mod tests {
     use rand_pcg::Pcg64;
 
     #[test]
-    fn a_narrow_valley_is_followed_to_its_end() {
+    fn an_ill_conditioned_function_is_optimised() {
         // −Σ 100^i (x_i − 1)² in 6 dimensions: an ill-conditioned test function.
         let value = |x: &Vec<f64>| {
             let terms = x

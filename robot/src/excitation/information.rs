@@ -308,7 +308,7 @@ mod tests {
     use nalgebra::{DMatrix, DVector};
 
     #[test]
-    fn condition_and_determinant_are_those_of_the_columns() {
+    fn condition_and_determinant_match_the_columns() {
         // Columns of norms 2 and 3 at 60 degrees: WᵀW is [[4, 3], [3, 9]]; unit columns have
         // eigenvalues 1 ± 1/2.
         let matrix = DMatrix::from_row_slice(2, 2, &[4.0, 3.0, 3.0, 9.0]);

@@ -98,7 +98,7 @@ mod tests {
     use super::{in_keys, path};
 
     #[test]
-    fn names_are_those_of_the_description() {
+    fn errors_use_the_key_names_of_the_description() {
         assert_eq!(
             path("runs[1].trajectory.terms[0].phase_rad"),
             "run[1].terms[0].phase"

@@ -35,7 +35,7 @@ mod tests {
     use super::partitions;
 
     #[test]
-    fn choices_are_complete() {
+    fn all_partitions_are_enumerated() {
         let four = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
         assert_eq!(partitions(4, 3), four);
         assert_eq!(partitions(8, 6).len(), 28);

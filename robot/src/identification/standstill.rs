@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     #[expect(clippy::single_range_in_vec_init, reason = "one standstill")]
-    fn skipped_samples_are_those_of_the_standstills() {
+    fn samples_of_standstills_are_skipped() {
         let text = include_str!("../../../robots/emps.toml");
         let robot = Robot::from_text("emps.toml", text).expect("a robot");
         let settings = Settings {

@@ -7,8 +7,8 @@ use overact_identification::CalibrationScope;
 use overact_tier::{by_tier, drawn, is_full};
 
 /// Faults of the robot.
-const LINK: (&str, f64) = ("d_2_leg2", 2.8e-3);
-const OFFSET: (&str, f64) = ("offset_leg3", 3.490_658_503_988_659e-3);
+const LINK_FAULT: (&str, f64) = ("d_2_leg2", 2.8e-3);
+const OFFSET_FAULT: (&str, f64) = ("offset_leg3", 3.490_658_503_988_659e-3);
 
 /// White noise: the right parameters are changed, and their 95 % intervals cover; so do those of
 /// all parameters together.
@@ -46,7 +46,7 @@ fn cover(colour: Colour, largest: f64) {
     let deviation = (NOMINAL * (1.0 - NOMINAL) / draws as f64).sqrt();
     let least = by_tier([0.5, NOMINAL - DEVIATIONS * deviation]);
     let described = robot(&text("dualv.toml"));
-    let real = faulty(&described, &[LINK]);
+    let real = faulty(&described, &[LINK_FAULT]);
     for scope in [CalibrationScope::Smallest, CalibrationScope::All] {
         let (mut covered, mut squares, mut right) = ([0; 2], [0.0; 2], 0);
         for draw in 0..draws {
@@ -56,14 +56,14 @@ fn cover(colour: Colour, largest: f64) {
                     deviation: 3e-6,
                     colour,
                 },
-                offsets: vec![0.0, 0.0, OFFSET.1],
+                offsets: vec![0.0, 0.0, OFFSET_FAULT.1],
                 seed: 1 + draw,
                 ..Reading::default()
             };
             let found = described.calibrate(&[run(&real, &reading)], scope);
             let found = found.expect("a calibration");
             right += usize::from(found.estimated.len() == 2);
-            for (which, (name, truth)) in [OFFSET, LINK].into_iter().enumerate() {
+            for (which, (name, truth)) in [OFFSET_FAULT, LINK_FAULT].into_iter().enumerate() {
                 let one = found.estimated.iter().find(|one| one.name == name);
                 let Some(one) = one else { continue };
                 let [low, high] = one.interval_95;

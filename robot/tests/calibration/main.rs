@@ -35,7 +35,7 @@ fn check(found: &Calibration, truth: &[(&str, f64)]) {
 }
 
 #[test]
-fn a_dualv_tells_an_encoder_offset_and_a_long_link() {
+fn an_encoder_offset_and_a_long_link_of_a_dualv_are_calibrated() {
     let described = robot(&text("dualv.toml"));
     let long = faulty(&described, &[("d_2_leg2", 2.8e-3)]);
     let offset = 0.2_f64.to_radians();
@@ -68,7 +68,7 @@ fn a_dualv_tells_an_encoder_offset_and_a_long_link() {
 }
 
 #[test]
-fn a_description_that_is_right_stays_as_it_is() {
+fn a_correct_description_is_not_changed() {
     let described = robot(&text("dualv.toml"));
     let found = calibrated(&described, run(&described, &Reading::default()));
     check(&found, &[]);
@@ -78,7 +78,7 @@ fn a_description_that_is_right_stays_as_it_is() {
 }
 
 #[test]
-fn without_redundancy_nothing_is_determined() {
+fn without_redundancy_nothing_is_calibrated() {
     let described = robot(&text("five_bar.toml"));
     let found = calibrated(&described, run(&described, &Reading::default()));
     assert!(found.estimated.is_empty() && !found.is_change());
@@ -91,7 +91,7 @@ fn without_redundancy_nothing_is_determined() {
 
 /// Single faults of planar, translational, spherical and spatial robots.
 #[test]
-fn faults_of_other_robots_are_found() {
+fn single_faults_of_other_robots_are_located() {
     let cases: &[(&str, &str, f64)] = by_tier([
         &[("planar_4prr.toml", "offset_leg2", 2e-4)],
         &[
@@ -162,7 +162,7 @@ fn errors(result: &Identification) -> Vec<(String, f64, bool)> {
 ///
 /// They are wrong with the description and right with its calibration.
 #[test]
-fn a_calibrated_dualv_has_its_parameters_again() {
+fn calibration_restores_the_parameters_of_a_dualv() {
     if !is_full() {
         return;
     }
@@ -223,9 +223,9 @@ fn encoder_offsets_of_robots_without_a_platform_are_calibrated() {
             names.iter().all(|name| name.starts_with("offset_")),
             "{names:?}"
         );
-        let is_told =
+        let is_reported =
             |remark: &String| remark.contains("calibration of lengths requires a platform");
-        assert!(found.remarks.iter().any(is_told), "{:?}", found.remarks);
+        assert!(found.remarks.iter().any(is_reported), "{:?}", found.remarks);
         if scope == CalibrationScope::Smallest {
             check(&found, &[("offset_output", offset)]);
         }

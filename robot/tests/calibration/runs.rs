@@ -108,7 +108,7 @@ struct Noise {
 }
 
 /// Length of the filter.
-const LONGEST: usize = 121;
+const FILTER_LENGTH: usize = 121;
 
 impl Noise {
     fn new(seed: u64, sensors: usize, encoder: Encoder) -> Self {
@@ -167,13 +167,17 @@ impl Noise {
 fn factors(colour: Colour) -> Vec<f64> {
     let factors: Vec<f64> = match colour {
         Colour::White => vec![1.0],
-        Colour::Remembered(part) => (0..LONGEST as i32).map(|lag| part.powi(lag)).collect(),
-        Colour::BandLimited(part) => (0..LONGEST)
+        Colour::Remembered(part) => (0..FILTER_LENGTH as i32)
+            .map(|lag| part.powi(lag))
+            .collect(),
+        Colour::BandLimited(part) => (0..FILTER_LENGTH)
             .map(|lag| {
-                let middle = 0.5 * (LONGEST - 1) as f64;
+                let middle = 0.5 * (FILTER_LENGTH - 1) as f64;
                 let from = PI * part * (lag as f64 - middle);
                 let ideal = if from == 0.0 { 1.0 } else { from.sin() / from };
-                let window = (PI * (lag as f64 + 0.5) / LONGEST as f64).sin().powi(2);
+                let window = (PI * (lag as f64 + 0.5) / FILTER_LENGTH as f64)
+                    .sin()
+                    .powi(2);
                 ideal * window
             })
             .collect(),

@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_are_as_stated() {
+    fn errors_are_within_the_stated_ulps() {
         for scale in [0.7, 4.0, 100.0, LARGEST] {
             let mut worst = 0.0_f64;
             for k in 0..200_000_u32 {
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn multiples_of_a_quarter_turn_lose_no_digits() {
+    fn multiples_of_a_quarter_turn_keep_their_precision() {
         for n in -5200_i32..5200 {
             let x = (f64::from(n) * core::f64::consts::FRAC_PI_2) as f32;
             let (sine, cosine) = sin_cos(x);
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn large_angles_and_those_that_are_no_numbers_are_the_library_s() {
+    fn large_and_non_finite_angles_use_the_library() {
         let found = sin_cos_all([1e30, 0.5, f32::NAN, f32::INFINITY, -0.0]);
         assert_eq!(found[0], 1e30_f32.sin_cos());
         assert!(found[2].0.is_nan() && found[3].1.is_nan());

@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn both_forms_are_the_same_within_two_ulps_of_libm() {
+    fn both_forms_are_equal_and_within_two_ulps_of_libm() {
         let mut worst = 0.0_f64;
         for scale in [1e-8, 1.0, 4.0, 100.0, LARGEST] {
             for k in 0..20_000_u32 {
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_against_128_bits_are_as_stated() {
+    fn errors_against_128_bits_are_within_the_stated_ulps() {
         use astro_float_num::{BigFloat, Consts, RoundingMode};
         let mut constants = Consts::new().expect("memory");
         // Error of a double, without rounding the exact value first.
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn multiples_of_a_quarter_turn_lose_no_digits() {
+    fn multiples_of_a_quarter_turn_keep_their_precision() {
         for n in -60_000_i32..60_000 {
             let x = f64::from(n) * core::f64::consts::FRAC_PI_2;
             let [(sine, cosine), _] = sin_cos_all([x, 0.0]);
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn large_angles_and_those_that_are_no_numbers_are_the_library_s() {
+    fn large_and_non_finite_angles_use_the_library() {
         let found = sin_cos_all([1e300, 0.5, f64::NAN, f64::INFINITY, -0.0]);
         assert_eq!(found[0], super::super::sin_cos(1e300));
         assert!(found[2].0.is_nan() && found[3].1.is_nan());

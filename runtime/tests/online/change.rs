@@ -35,7 +35,7 @@ fn shifts_are_detected_with_their_sign() {
 }
 
 #[test]
-fn one_outlier_is_no_change() {
+fn single_outliers_are_not_detected_as_changes() {
     let mut test = ChangeTest::new(1.0, 1e6).unwrap();
     for outlier in [1e300, -1e300, f64::NAN, f64::INFINITY] {
         assert_eq!(test.update(outlier), None);
@@ -58,7 +58,7 @@ fn settings_out_of_range_are_errors() {
 }
 
 #[test]
-fn whitened_innovations_have_the_stated_rate() {
+fn whitened_innovations_have_the_stated_false_alarm_rate() {
     let samples = 1000.0;
     for correlation in [0.9, -0.5] {
         let mut random = Random(13);

@@ -41,7 +41,7 @@ fn batch<const P: usize>(rows: &[([f64; P], f64, f64)]) -> ([f64; P], [[f64; P];
 }
 
 #[test]
-fn equals_batch_least_squares_with_every_prior() {
+fn estimates_equal_batch_least_squares_with_every_prior() {
     const P: usize = 5;
     let mut random = Random(1);
     let truth: [f64; P] = random.row();
@@ -114,7 +114,7 @@ fn innovation_is_the_difference_from_the_prediction() {
 }
 
 #[test]
-fn residual_deviation_is_that_of_batch_least_squares() {
+fn residual_deviation_equals_batch_least_squares() {
     let mut random = Random(3);
     let mut filter = Filter::<2>::without_prior();
     let rows: Vec<_> = (0..30)
@@ -137,7 +137,7 @@ fn residual_deviation_is_that_of_batch_least_squares() {
 }
 
 #[test]
-fn rank_decides_whether_there_is_an_estimate() {
+fn estimates_require_full_rank() {
     let mut filter = Filter::<3>::without_prior();
     let mut random = Random(4);
     // All rows are in a plane.
@@ -212,7 +212,7 @@ fn priors_that_are_not_positive_definite_are_errors() {
 }
 
 #[test]
-fn slices_compute_the_same_bits() {
+fn slice_and_array_filters_compute_the_same_bits() {
     let mut random = Random(5);
     let (mut factor, mut vectors) = ([7.0; 16], [7.0; 16]);
     let mut slices = SliceFilter::without_prior(&mut factor, &mut vectors).unwrap();
@@ -239,7 +239,7 @@ fn slices_compute_the_same_bits() {
 }
 
 #[test]
-fn late_columns_do_not_hide_the_others() {
+fn undetermined_columns_do_not_hide_the_others() {
     let mut random = Random(9);
     let (mut factor, mut vectors) = ([0.0; 9], [0.0; 12]);
     let mut slices = SliceFilter::without_prior(&mut factor, &mut vectors).unwrap();
@@ -262,7 +262,7 @@ fn late_columns_do_not_hide_the_others() {
 }
 
 #[test]
-fn single_precision_agrees_to_its_rounding() {
+fn single_precision_agrees_within_rounding() {
     let mut random = Random(6);
     let mut double = Filter::<4>::without_prior();
     let mut single = Filter::<4, f32>::without_prior();

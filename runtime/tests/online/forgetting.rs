@@ -44,7 +44,7 @@ fn exponential_forgetting_scales_the_information_once_per_block() {
 }
 
 #[test]
-fn directional_forgetting_is_that_of_cao_and_schwartz() {
+fn directional_forgetting_matches_cao_and_schwartz() {
     let mut random = Random(2);
     let before = started(&mut random);
     for w in [random.row(), [0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, -2.0]] {
@@ -78,7 +78,7 @@ fn directional_forgetting_is_that_of_cao_and_schwartz() {
 }
 
 #[test]
-fn forgetting_follows_a_parameter_that_changes() {
+fn forgetting_tracks_a_changing_parameter() {
     for forgetting in [Forgetting::Exponential(0.98), Forgetting::Directional(0.98)] {
         let mut random = Random(3);
         let filter = Filter::<2>::from_standard_deviations(&[0.0; 2], &[100.0; 2]).unwrap();
@@ -95,7 +95,7 @@ fn forgetting_follows_a_parameter_that_changes() {
 }
 
 #[test]
-fn information_never_falls_below_the_prior_and_the_estimate_stays() {
+fn forgetting_keeps_a_minimum_of_information_and_the_estimate() {
     for forgetting in [Forgetting::Exponential(0.5), Forgetting::Directional(0.5)] {
         let mut random = Random(4);
         let mut filter = started(&mut random).with_forgetting(forgetting).unwrap();
@@ -132,7 +132,7 @@ fn factors_outside_their_range_are_errors() {
 }
 
 #[test]
-fn information_that_decays_becomes_zero_and_never_subnormal() {
+fn decaying_information_becomes_zero_and_never_subnormal() {
     let filter = Filter::<2>::without_prior();
     let mut filter = filter
         .with_forgetting(Forgetting::Exponential(0.5))

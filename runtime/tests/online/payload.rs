@@ -226,7 +226,7 @@ fn planar_robots_need_four_columns() {
 }
 
 #[test]
-fn single_precision_gives_a_body_too() {
+fn single_precision_gives_a_consistent_body() {
     let size = PayloadSize::<f32> {
         mass: 10.0,
         length: 0.3,
@@ -253,7 +253,7 @@ fn single_precision_gives_a_body_too() {
 }
 
 #[test]
-fn columns_and_sizes_are_checked() {
+fn invalid_columns_and_sizes_are_rejected() {
     use StandardParameter::{Fv, M, Mx};
     assert!(PayloadEstimator::<2>::new([M, M], SIZE).is_err());
     assert!(PayloadEstimator::<2>::new([Mx, Fv], SIZE).is_err());

@@ -16,16 +16,16 @@ const GRAVITY: f64 = 9.81;
 const LENGTH: f64 = 0.4;
 /// Sampling, Hz; and samples per estimation.
 const SAMPLING: f64 = 1000.0;
-const EVERY: usize = 10;
+const SAMPLES_PER_ESTIMATE: usize = 10;
 /// Encoder steps per turn, and noise of a torque, N m.
 const STEPS: f64 = 65_536.0;
 const NOISE: f64 = 0.3;
 /// Time after a change until which the filters settle, and until which there is no test, s.
-const SETTLED: f64 = 0.1;
-const LEARNED: f64 = 1.5;
+const SETTLING_TIME: f64 = 0.1;
+const LEARNING_TIME: f64 = 1.5;
 /// Mass picked up, kg; its place on the second link, m; its inertia about its centre.
 const MASS: f64 = 1.5;
-const PLACE: f64 = 0.3;
+const MASS_POSITION: f64 = 0.3;
 const INERTIA: f64 = 0.004;
 
 /// Joint rows of zz, mx, my, m of a body on the second link, whose frame is at the elbow.
@@ -94,7 +94,7 @@ fn run(seed: u64, duration: f64, picked_up: f64) -> Outcome {
     };
     // White noise of this deviation in every tenth sample has the spectral density of the torque's
     // noise within the filter's band.
-    let sigma = NOISE / (EVERY as f64).sqrt();
+    let sigma = NOISE / (SAMPLES_PER_ESTIMATE as f64).sqrt();
     let mut estimator = PayloadEstimator::<4>::new([Zz, Mx, My, M], size)
         .unwrap()
         .with_forgetting(Forgetting::Directional(0.9995))
@@ -116,7 +116,12 @@ fn run(seed: u64, duration: f64, picked_up: f64) -> Outcome {
         let (q, v, a) = ([one[0], two[0]], [one[1], two[1]], [one[2], two[2]]);
         let mut tau = arm(q, v, a);
         if t >= picked_up {
-            let body = [INERTIA + MASS * PLACE * PLACE, MASS * PLACE, 0.0, MASS];
+            let body = [
+                INERTIA + MASS * MASS_POSITION * MASS_POSITION,
+                MASS * MASS_POSITION,
+                0.0,
+                MASS,
+            ];
             for (tau, row) in tau.iter_mut().zip(rows(q, v, a)) {
                 *tau += row.iter().zip(body).map(|(a, b)| a * b).sum::<f64>();
             }
@@ -135,7 +140,7 @@ fn run(seed: u64, duration: f64, picked_up: f64) -> Outcome {
             let noisy = tau[joint] + NOISE * random.normal();
             measured[joint] = torques[joint].update(noisy).unwrap().value;
         }
-        if sample < 200 || sample % EVERY != 0 {
+        if sample < 200 || sample % SAMPLES_PER_ESTIMATE != 0 {
             continue;
         }
         let [q, v, a] = state;
@@ -148,11 +153,11 @@ fn run(seed: u64, duration: f64, picked_up: f64) -> Outcome {
         for ((whitening, test), one) in whitening.iter_mut().zip(&mut tests).zip(innovations) {
             has_changed |= test.update(whitening.update(one.normalised)).is_some();
         }
-        if t < changed + SETTLED {
+        if t < changed + SETTLING_TIME {
             // Rows until then contain torques from before the change.
             estimator.discount(1e-2).unwrap();
         }
-        if t < changed + LEARNED {
+        if t < changed + LEARNING_TIME {
             tests.iter_mut().for_each(ChangeTest::reset);
         } else if has_changed {
             outcome.changes.push(t);
@@ -188,7 +193,7 @@ fn clean_runs_raise_few_false_alarms() {
 }
 
 #[test]
-fn a_picked_up_mass_is_detected_and_found() {
+fn a_picked_up_mass_is_detected_and_estimated() {
     let runs = by_tier([4, 100]);
     let mut repeated = 0;
     let (mut delays, mut known, mut errors) = (Vec::new(), Vec::new(), Vec::new());
@@ -199,7 +204,7 @@ fn a_picked_up_mass_is_detected_and_found() {
         repeated += later.count();
         assert!(delay > 0.0 && delay < 1.0, "{outcome:?}");
         assert!((outcome.mass / MASS - 1.0).abs() < 0.02, "{outcome:?}");
-        assert!((outcome.centre - PLACE).abs() < 0.02, "{outcome:?}");
+        assert!((outcome.centre - MASS_POSITION).abs() < 0.02, "{outcome:?}");
         delays.push(delay);
         known.push(outcome.known.expect("a narrow interval"));
         errors.push(outcome.mass - MASS);

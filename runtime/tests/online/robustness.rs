@@ -81,7 +81,7 @@ fn run<T: Float>(forgetting: Forgetting<T>, samples: usize, has_prior: bool) {
 }
 
 #[test]
-fn hostile_samples_leave_finite_answers_and_a_regular_factor() {
+fn hostile_samples_keep_estimates_finite_and_the_factor_regular() {
     let samples = if is_night() {
         10_000_000
     } else {
@@ -117,7 +117,7 @@ fn the_largest_rows_do_not_overflow() {
 }
 
 #[test]
-fn a_clean_estimate_follows_hostile_samples() {
+fn the_estimate_recovers_after_hostile_samples() {
     let filter = Filter::<P>::from_standard_deviations(&[0.0; P], &[100.0; P]).unwrap();
     let mut filter = filter
         .with_forgetting(Forgetting::Exponential(0.99))

@@ -35,7 +35,7 @@ fn check_response<const N: usize>() {
 }
 
 #[test]
-fn response_is_that_of_a_butterworth_filter() {
+fn frequency_response_matches_a_butterworth_filter() {
     check_response::<3>();
     check_response::<4>();
     check_response::<6>();

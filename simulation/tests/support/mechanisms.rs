@@ -232,12 +232,12 @@ impl Leg {
         let rate = (f[0] * tip[0] + f[1] * tip[1]) / b;
         let [co, s] = self.direction;
         let elbow = [-LINK * s * rate, LINK * co * rate];
-        let slip = (tip[0] - elbow[0]).powi(2) + (tip[1] - elbow[1]).powi(2);
+        let squared_rate = (tip[0] - elbow[0]).powi(2) + (tip[1] - elbow[1]).powi(2);
         let centripetal = [
             -v[2] * v[2] * self.lever[0] + LINK * co * rate * rate,
             -v[2] * v[2] * self.lever[1] + LINK * s * rate * rate,
         ];
-        Ok((f[0] * centripetal[0] + f[1] * centripetal[1] + slip) / b)
+        Ok((f[0] * centripetal[0] + f[1] * centripetal[1] + squared_rate) / b)
     }
 }
 

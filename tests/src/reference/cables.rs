@@ -16,8 +16,8 @@ const STEP: f64 = 1e-3;
 /// Step of second differences, s.
 const TIME: f64 = 3e-3;
 /// Weights of seven-point differences, of odd and of even order.
-const FIRST: [f64; 3] = [0.75, -0.15, 1.0 / 60.0];
-const SECOND: [f64; 4] = [-49.0 / 18.0, 1.5, -0.15, 1.0 / 90.0];
+const FIRST_DIFFERENCE: [f64; 3] = [0.75, -0.15, 1.0 / 60.0];
+const SECOND_DIFFERENCE: [f64; 4] = [-49.0 / 18.0, 1.5, -0.15, 1.0 / 90.0];
 
 /// Length of a cable for the platform's frame; NaN for other legs.
 #[must_use]
@@ -77,7 +77,7 @@ pub fn row(mechanism: &Mechanism, leg: &Leg, pose: &[f64]) -> DMatrix<f64> {
                 &mechanism.motion.displace(pose, &displacement),
             )
         };
-        let parts = FIRST.iter().enumerate().map(|(k, weight)| {
+        let parts = FIRST_DIFFERENCE.iter().enumerate().map(|(k, weight)| {
             let steps = (k + 1) as f64;
             weight * (moved(steps) - moved(-steps))
         });
@@ -103,8 +103,8 @@ pub fn acceleration(
             &mechanism.motion.displace(pose, &displacement),
         )
     };
-    let mut sum = SECOND[0] * at(0.0);
-    for (k, weight) in SECOND.iter().enumerate().skip(1) {
+    let mut sum = SECOND_DIFFERENCE[0] * at(0.0);
+    for (k, weight) in SECOND_DIFFERENCE.iter().enumerate().skip(1) {
         let t = k as f64 * TIME;
         sum += weight * (at(t) + at(-t));
     }

@@ -18,14 +18,14 @@ use nalgebra::{DMatrix, DVector, Vector6};
 /// Relative residual of the equations up to which it counts as rounding.
 const CONSISTENCY: f64 = 1e-9;
 /// Largest distance of the two sides of a cut, metres and radians.
-const CLOSED: f64 = 1e-12;
+const LARGEST_GAP: f64 = 1e-12;
 /// Residual at which Newton's method stops, near rounding.
 const EXACT: f64 = 3e-16;
 /// Steps from the home pose.
 const STEPS: usize = 8;
 
 /// Spatial vector in other axes.
-fn turned(axes: &Frame, of: &Vector6<f64>) -> Vector6<f64> {
+fn in_axes(axes: &Frame, of: &Vector6<f64>) -> Vector6<f64> {
     let into = axes.rotation.transpose();
     let (linear, angular) = (into * of.fixed_rows::<3>(0), into * of.fixed_rows::<3>(3));
     Vector6::new(
@@ -56,7 +56,7 @@ fn of_cuts(
             continue;
         }
         let (own, other, axes) = sides(leg, k, bodies);
-        let values = turned(&axes, &difference(&own, &other));
+        let values = in_axes(&axes, &difference(&own, &other));
         all.extend(components.into_iter().map(|at| values[at]));
     }
     DVector::from_vec(all)
@@ -211,7 +211,7 @@ pub fn close(
     near: &DVector<f64>,
 ) -> Result<DVector<f64>, Error> {
     let (q, residual) = newton(mechanism, pose, near, EXACT);
-    if residual < CLOSED {
+    if residual < LARGEST_GAP {
         Ok(q)
     } else {
         Err(Error::NoConvergence { leg: 0, residual })

@@ -26,11 +26,11 @@ use nalgebra::{DMatrix, DVector};
 /// Number of steps from the home pose.
 const STEPS: usize = 8;
 /// Largest closure residual of a solved leg, metres and radians.
-const CLOSED: f64 = 1e-12;
+const LARGEST_RESIDUAL: f64 = 1e-12;
 /// Residual at which Newton's method stops, near rounding.
 const EXACT: f64 = 3e-16;
 /// Residual that is sufficient on the way to the pose.
-const ON_THE_WAY: f64 = 1e-5;
+const INTERMEDIATE_RESIDUAL: f64 = 1e-5;
 
 /// Motion of a robot at an instant; joint vectors have the layout of [`Mechanism::variables`].
 #[derive(Clone, Debug, PartialEq)]
@@ -180,7 +180,7 @@ pub fn joint_positions(mechanism: &Mechanism, pose: &[f64]) -> Result<DVector<f6
         for step in 0..STEPS {
             let part = &path * (step as f64 / STEPS as f64);
             let between = mechanism.motion.displace(&mechanism.home, &part);
-            q = newton(mechanism, leg, &between, &q, ON_THE_WAY).0;
+            q = newton(mechanism, leg, &between, &q, INTERMEDIATE_RESIDUAL).0;
         }
         all.extend(close(mechanism, k, pose, &q)?);
     }
@@ -203,7 +203,7 @@ pub fn close(
         return Ok(vec![cables::length_at(mechanism, leg, pose)]);
     }
     let (q, residual) = newton(mechanism, leg, pose, start, EXACT);
-    if residual < CLOSED {
+    if residual < LARGEST_RESIDUAL {
         Ok(q)
     } else {
         Err(Error::NoConvergence { leg: k, residual })

@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 /// Singular values below this fraction of the largest one count as zero.
 pub const RANK_TOLERANCE: f64 = 1e-11;
 /// Cosine of the angle between two columns below which they count as orthogonal.
-const ORTHOGONAL: f64 = 1e-15;
+const ORTHOGONAL_COSINE: f64 = 1e-15;
 /// Sweeps over all pairs of columns; about eight are needed.
 const MAX_SWEEPS: usize = 60;
 
@@ -72,7 +72,7 @@ pub fn decompose(matrix: &DMatrix<f64>) -> Decomposition {
 /// Cosine and sine of the rotation that makes two columns orthogonal; none if they are.
 fn rotation(a: &[f64], b: &[f64], negligible: f64) -> Option<(f64, f64)> {
     let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
-    if aa <= negligible || bb <= negligible || ab.abs() <= ORTHOGONAL * (aa * bb).sqrt() {
+    if aa <= negligible || bb <= negligible || ab.abs() <= ORTHOGONAL_COSINE * (aa * bb).sqrt() {
         return None;
     }
     let zeta = (bb - aa) / (2.0 * ab);
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn decomposition_reconstructs() {
+    fn singular_value_decomposition_reconstructs_the_matrix() {
         for (rows, columns) in [(8, 5), (5, 5), (5, 9)] {
             let matrix = sample(rows, columns);
             let found = decompose(&matrix);
@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn pseudo_inverse_satisfies_penrose() {
+    fn pseudo_inverse_satisfies_the_penrose_conditions() {
         for (rows, columns) in [(8, 5), (5, 5), (5, 9)] {
             let a = sample(rows, columns);
             let x = pseudo_inverse(&a);
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn null_space_and_adjugate() {
+    fn null_space_and_adjugate_satisfy_their_definitions() {
         let matrix = sample(6, 4);
         let basis = null_space(&matrix);
         assert_eq!(basis.ncols(), 1);

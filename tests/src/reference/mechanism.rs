@@ -22,7 +22,7 @@ const GAUSS: [(f64, f64); 3] = [
     (0.932_469_514_203_152, 0.171_324_492_379_170_35),
 ];
 /// Pieces of an interval of integration.
-const PIECES: usize = 16;
+const INTEGRATION_PIECES: usize = 16;
 
 /// What a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,16 +89,16 @@ impl Spring {
     /// Work against the torque between two positions, by Gauss's quadrature.
     #[must_use]
     pub fn work(&self, from: f64, to: f64) -> f64 {
-        let length = (to - from) / PIECES as f64;
+        let length = (to - from) / INTEGRATION_PIECES as f64;
         let piece = |piece: usize| {
             let middle = from + length * (piece as f64 + 0.5);
             let point = |&(at, weight): &(f64, f64)| {
-                let apart = 0.5 * length * at;
-                weight * (self.torque(middle - apart) + self.torque(middle + apart))
+                let half_distance = 0.5 * length * at;
+                weight * (self.torque(middle - half_distance) + self.torque(middle + half_distance))
             };
             0.5 * length * GAUSS.iter().map(point).sum::<f64>()
         };
-        (0..PIECES).map(piece).sum()
+        (0..INTEGRATION_PIECES).map(piece).sum()
     }
 }
 

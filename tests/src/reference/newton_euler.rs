@@ -164,8 +164,9 @@ pub fn friction(rate: f64, coefficients: &[f64], stribeck: Option<f64>) -> f64 {
     } else {
         (dry_up - dry_down) / 2.0
     };
-    let fallen = |velocity: f64| velocity * velocity / (velocity * velocity + rate * rate);
-    directed + excess * stribeck.map_or(0.0, fallen) * sign(rate)
+    let stribeck_fraction =
+        |velocity: f64| velocity * velocity / (velocity * velocity + rate * rate);
+    directed + excess * stribeck.map_or(0.0, stribeck_fraction) * sign(rate)
 }
 
 /// Known torques of a leg's variables, without parameters.
@@ -201,13 +202,13 @@ pub fn tree_torques(
     for (k, (leg, range)) in legs.rev() {
         let own = &parameters.as_slice()[leg_start(mechanism, k)..leg_start(mechanism, k + 1)];
         let motion = [&state.q, &state.qd, &state.qdd].map(|all| &all.as_slice()[range.clone()]);
-        let borne: Vec<(usize, Wrench)> = loads
+        let applied: Vec<(usize, Wrench)> = loads
             .iter()
             .filter(|((of, _), _)| *of == k)
             .map(|((_, body), load)| (*body, *load))
             .collect();
         let (torques, base) =
-            leg_torques(leg, &motions[k], motion, own, &mechanism.gravity, &borne);
+            leg_torques(leg, &motions[k], motion, own, &mechanism.gravity, &applied);
         let torques = torques + known_torques(leg, motion[0]);
         all.rows_mut(range.start, range.len()).copy_from(&torques);
         loads.extend(leg.carrier.map(|carrier| (carrier, base)));
@@ -297,12 +298,12 @@ pub fn regressor(mechanism: &Mechanism, state: &State) -> DMatrix<f64> {
                 .copy_from(&torques);
             let (mut carrier, mut load) = (leg.carrier, base);
             while let Some((of, body)) = carrier {
-                let (borne, base) =
+                let (applied, base) =
                     carried_torques(mechanism, state, of, &motions[of], (body, load));
                 let first = mechanism.leg_ranges()[of].start;
                 columns
-                    .view_mut((first, column), (borne.len(), 1))
-                    .copy_from(&borne);
+                    .view_mut((first, column), (applied.len(), 1))
+                    .copy_from(&applied);
                 (carrier, load) = (mechanism.legs[of].carrier, base);
             }
         }

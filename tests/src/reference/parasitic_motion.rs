@@ -23,7 +23,7 @@ use nalgebra::{DMatrix, DVector};
 /// Relative residual of the equations up to which it counts as rounding.
 const CONSISTENCY: f64 = 1e-9;
 /// Largest closure residual, metres and radians.
-const CLOSED: f64 = 1e-12;
+const LARGEST_RESIDUAL: f64 = 1e-12;
 /// Residual at which Newton's method stops, near rounding.
 const EXACT: f64 = 3e-16;
 /// Continuation steps to a pose.
@@ -31,7 +31,7 @@ const STEPS: usize = 8;
 
 /// The robot with a free platform, whose six components are all independent.
 #[must_use]
-pub fn freed(mechanism: &Mechanism) -> Mechanism {
+pub fn with_free_platform(mechanism: &Mechanism) -> Mechanism {
     Mechanism {
         motion: Motion::Spatial,
         ..mechanism.clone()
@@ -101,7 +101,7 @@ pub fn rates(
     pose: &[f64],
     q: &DVector<f64>,
 ) -> Result<[DMatrix<f64>; 2], Error> {
-    let closures = closures(&freed(mechanism), pose, q);
+    let closures = closures(&with_free_platform(mechanism), pose, q);
     let dof = mechanism.dof();
     let still = DMatrix::zeros(closures.nrows(), dof);
     let found = solve(mechanism, &closures, [&still, &DMatrix::identity(dof, dof)])?;
@@ -118,7 +118,7 @@ pub fn rates(
 ///
 /// If the closures contradict the independent components.
 pub fn accelerations(mechanism: &Mechanism, state: &State) -> Result<[DVector<f64>; 2], Error> {
-    let free = freed(mechanism);
+    let free = with_free_platform(mechanism);
     let closures = closures(&free, &state.pose, &state.q);
     let [_, velocities] = rates(mechanism, &state.pose, &state.q)?;
     let twist = velocities * &state.twist;
@@ -169,7 +169,7 @@ pub fn jacobians(
     pose: &[f64],
     q: &DVector<f64>,
 ) -> Result<Jacobians, Error> {
-    let free = freed(mechanism);
+    let free = with_free_platform(mechanism);
     let (total, dof) = (mechanism.joints(), mechanism.dof());
     let transmission = transmission(mechanism);
     let n = transmission.nrows();
@@ -248,7 +248,7 @@ pub fn displaced(
     near: &DVector<f64>,
     step: &DVector<f64>,
 ) -> Result<(Vec<f64>, DVector<f64>), Error> {
-    let free = freed(mechanism);
+    let free = with_free_platform(mechanism);
     let own = mechanism.motion.independent();
     let others: Vec<usize> = (0..6).filter(|at| !own.contains(at)).collect();
     let mut whole = DVector::zeros(6);
@@ -258,9 +258,9 @@ pub fn displaced(
         for (&at, step) in own.iter().zip(step) {
             whole[at] = step * part as f64 / STEPS as f64;
         }
-        left = close(&free, pose, &others, &mut whole, &mut q);
+        left = solve_closures(&free, pose, &others, &mut whole, &mut q);
     }
-    if left < CLOSED {
+    if left < LARGEST_RESIDUAL {
         Ok((free.motion.displace(pose, &whole), q))
     } else {
         Err(Error::NoConvergence {
@@ -272,7 +272,7 @@ pub fn displaced(
 
 /// Newton's method on all leg ends, in the joints and the dependent displacement components;
 /// returns the residual.
-fn close(
+fn solve_closures(
     free: &Mechanism,
     from: &[f64],
     others: &[usize],

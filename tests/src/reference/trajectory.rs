@@ -50,17 +50,17 @@ pub fn derivatives(
     state: &State,
     quantity: impl Fn(&State) -> DVector<f64>,
 ) -> Result<(DVector<f64>, DVector<f64>), Error> {
-    const FIRST: [f64; 4] = [0.0, 0.75, -0.15, 1.0 / 60.0];
-    const SECOND: [f64; 4] = [-49.0 / 18.0, 1.5, -0.15, 1.0 / 90.0];
+    const FIRST_DIFFERENCE: [f64; 4] = [0.0, 0.75, -0.15, 1.0 / 60.0];
+    const SECOND_DIFFERENCE: [f64; 4] = [-49.0 / 18.0, 1.5, -0.15, 1.0 / 90.0];
     let step = step(state);
     let sample = |n: f64| Ok(quantity(&at(mechanism, state, n * step)?));
-    let mut second: DVector<f64> = sample(0.0)? * SECOND[0];
+    let mut second: DVector<f64> = sample(0.0)? * SECOND_DIFFERENCE[0];
     let mut first = DVector::zeros(second.len());
     for n in 1..4 {
         let (ahead, behind): (DVector<f64>, DVector<f64>) =
             (sample(n as f64)?, sample(-(n as f64))?);
-        first += (&ahead - &behind) * FIRST[n];
-        second += (ahead + behind) * SECOND[n];
+        first += (&ahead - &behind) * FIRST_DIFFERENCE[n];
+        second += (ahead + behind) * SECOND_DIFFERENCE[n];
     }
     Ok((first / step, second / (step * step)))
 }

@@ -13,7 +13,7 @@ use nalgebra::DMatrix;
 /// Logarithms of the shortest and the longest characteristic length in the search, m.
 const LENGTHS: [f64; 2] = [-7.0, 7.0];
 /// Tolerance of the logarithm; the condition number is too large by at most this relative error.
-const NEAR: f64 = 0.01;
+const LOGARITHM_TOLERANCE: f64 = 0.01;
 
 /// Smallest condition number over all units of length, for a matrix with one column per twist
 /// coordinate.
@@ -47,7 +47,7 @@ fn smallest(of: impl Fn(f64) -> f64) -> f64 {
     let [mut low, mut high] = LENGTHS;
     let (mut left, mut right) = (high - part * (high - low), low + part * (high - low));
     let (mut at_left, mut at_right) = (of(left), of(right));
-    while high - low > NEAR {
+    while high - low > LOGARITHM_TOLERANCE {
         if at_left < at_right {
             (high, right, at_right) = (right, left, at_left);
             left = high - part * (high - low);
@@ -77,19 +77,22 @@ mod tests {
     }
 
     #[test]
-    fn the_size_of_a_robot_does_not_matter() {
+    fn the_condition_number_is_independent_of_robot_size() {
         let planar = Motion::Planar(2);
         let metre = unitless_condition(&planar, &rods(1.0));
         assert!(metre > 1.0 && metre < 2.0, "{metre}");
         for length in [0.003, 0.03, 30.0] {
             let found = unitless_condition(&planar, &rods(length));
-            assert!((found / metre - 1.0).abs() < NEAR, "{length}: {found}");
+            assert!(
+                (found / metre - 1.0).abs() < LOGARITHM_TOLERANCE,
+                "{length}: {found}"
+            );
             assert!(found < condition(&rods(length)), "{length}: {found}");
         }
     }
 
     #[test]
-    fn a_singular_robot_stays_singular() {
+    fn a_singular_matrix_has_a_large_condition_number() {
         let mut matrix = rods(0.03);
         let sum = matrix.row(0) + matrix.row(1);
         matrix.set_row(2, &sum);
@@ -98,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn where_all_columns_have_one_unit_the_condition_is_the_usual_one() {
+    fn columns_of_one_unit_have_the_usual_condition_number() {
         let matrix = rods(0.03);
         for motion in [Motion::Translation, Motion::Spherical, Motion::None] {
             assert_eq!(unitless_condition(&motion, &matrix), condition(&matrix));

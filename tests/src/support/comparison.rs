@@ -17,7 +17,7 @@ use overact_codegen::{CompiledFunction, RobotModel};
 
 /// Condition number of a partition above which the tolerance is this number of roundings times the
 /// condition number.
-const PLAIN: f64 = 1e3;
+const PLAIN_CONDITION: f64 = 1e3;
 const ROUNDING: f64 = 1e-12;
 
 /// Results so far.
@@ -125,7 +125,7 @@ impl Comparison {
             let own = program.as_ref().map(|program| own_output(program, sample));
             for (agreement, found) in found.iter_mut().zip([Some(projected), own.transpose()?]) {
                 let Some(found) = found else { continue };
-                if condition < PLAIN {
+                if condition < PLAIN_CONDITION {
                     agreement.compare(&found, &wanted);
                 } else {
                     worst = worst.max(relative_difference(&found, &wanted) / condition);

@@ -184,7 +184,7 @@ mod tests {
     use super::with_springs;
 
     #[test]
-    fn only_joints_that_move_get_elements() {
+    fn only_moving_joints_get_springs() {
         let text = "name = \"A\"\n[[leg.a.joint]]\ntype = \"revolute\"   # turns\n\
                     [[leg.a.joint]]\ntype = \"fixed\"\n[leg.a.end]\ntype = \"rigid\"\n";
         let changed = with_springs(text, 1);

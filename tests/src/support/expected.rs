@@ -334,7 +334,7 @@ impl Truth<'_> {
 }
 
 /// Smallest eigenvalue of the normalised mass matrix for which the motion is compared.
-const LIGHT: f64 = 1e-8;
+const SMALLEST_MASS_EIGENVALUE: f64 = 1e-8;
 
 /// Whether every motion has kinetic energy at all samples.
 ///
@@ -350,7 +350,7 @@ pub fn has_masses(truths: &[Truth<'_>]) -> Result<bool, Failure> {
         let scale = mass.diagonal().map(|entry| entry.sqrt().recip());
         let scaled = DMatrix::from_diagonal(&scale) * mass * DMatrix::from_diagonal(&scale);
         let is_finite = scaled.iter().all(|entry| entry.is_finite());
-        if !is_finite || scaled.symmetric_eigenvalues().min() < LIGHT {
+        if !is_finite || scaled.symmetric_eigenvalues().min() < SMALLEST_MASS_EIGENVALUE {
             return Ok(false);
         }
     }

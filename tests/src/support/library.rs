@@ -62,7 +62,7 @@ macro_rules! library {
         })*
 
         #[test]
-        fn no_description_is_left_out() -> Result<(), $crate::support::Failure> {
+        fn all_descriptions_are_tested() -> Result<(), $crate::support::Failure> {
             assert_eq!($crate::support::library::stems()?, [$(stringify!($stem)),*]);
             Ok(())
         }

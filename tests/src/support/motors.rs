@@ -66,7 +66,7 @@ struct Turned {
 }
 
 /// All joints of a description that move.
-fn turned(robot: &Description) -> Vec<Turned> {
+fn moving_joints(robot: &Description) -> Vec<Turned> {
     let legs = robot.legs.iter();
     let joints = legs.flat_map(|leg| leg.joints.iter().map(move |joint| (leg, joint)));
     let moving = joints.filter(|(_, joint)| joint.kind.value != JointKind::Fixed);
@@ -101,7 +101,7 @@ pub fn with_random_motors(text: &str, seed: u64) -> Result<String, Failure> {
     if robot.platform.is_none() && robot.legs.iter().all(|leg| leg.end.is_none()) {
         return Err("the robot has no loop".into());
     }
-    let joints = turned(&robot);
+    let joints = moving_joints(&robot);
     let mut dice = Dice::new(seed ^ 0x3070_12f5);
     let mut motors = String::new();
     let actuated: Vec<&Turned> = joints.iter().filter(|joint| joint.is_actuated).collect();

@@ -71,22 +71,22 @@ fn compare(stem: &str, compiled: &dyn Backend) -> Result<(), Failure> {
 }
 
 #[test]
-fn skeleton_with_chains() -> Result<(), Failure> {
+fn compiled_derivatives_agree_for_a_skeleton_with_chains() -> Result<(), Failure> {
     compare("ankle", &Ankle)
 }
 
 #[test]
-fn redundant_planar_platform() -> Result<(), Failure> {
+fn compiled_derivatives_agree_for_a_redundant_planar_platform() -> Result<(), Failure> {
     compare("dualv", &DualV)
 }
 
 #[test]
-fn serial_robot() -> Result<(), Failure> {
+fn compiled_derivatives_agree_for_a_serial_robot() -> Result<(), Failure> {
     compare("rx90", &Rx90)
 }
 
 #[test]
-fn single_precision() -> Result<(), Failure> {
+fn single_precision_derivatives_agree_within_rounding() -> Result<(), Failure> {
     let (pose, rates, loads) = ([0.01_f64, -0.02, 0.03], [0.4, -0.6, 0.9], [1.5, -2.0, 0.7]);
     // Standard parameters, then those of the payload.
     let parameters: [f64; 68] = std::array::from_fn(|k| 1.0 + 0.1 * (k % 7) as f64);

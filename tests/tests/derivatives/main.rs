@@ -81,22 +81,22 @@ const PARTS: usize = 4;
 macro_rules! all_robots {
     ($check:path) => {
         #[test]
-        fn first_robots() -> Result<(), Failure> {
+        fn derivatives_agree_for_the_first_quarter_of_robots() -> Result<(), Failure> {
             each(0, $check)
         }
 
         #[test]
-        fn second_robots() -> Result<(), Failure> {
+        fn derivatives_agree_for_the_second_quarter_of_robots() -> Result<(), Failure> {
             each(1, $check)
         }
 
         #[test]
-        fn third_robots() -> Result<(), Failure> {
+        fn derivatives_agree_for_the_third_quarter_of_robots() -> Result<(), Failure> {
             each(2, $check)
         }
 
         #[test]
-        fn fourth_robots() -> Result<(), Failure> {
+        fn derivatives_agree_for_the_fourth_quarter_of_robots() -> Result<(), Failure> {
             each(3, $check)
         }
     };

@@ -6,7 +6,7 @@ use overact_tests::support::{description, model_with};
 use std::fmt::Write as _;
 
 #[test]
-fn counts_of_four_robots() -> Result<(), Failure> {
+fn operation_counts_of_four_robots_match_the_snapshot() -> Result<(), Failure> {
     let mut table = String::new();
     for stem in ["rx90", "five_bar", "dualv", "ankle"] {
         let request = Request {

@@ -121,7 +121,7 @@ fn kinematics_and_jacobians_agree() -> Result<(), Failure> {
 }
 
 #[test]
-fn rates_agree() -> Result<(), Failure> {
+fn joint_and_platform_rates_agree() -> Result<(), Failure> {
     case_1(|function| {
         matches!(
             function,
@@ -144,7 +144,7 @@ fn case_1_regressors_agree() -> Result<(), Failure> {
 }
 
 #[test]
-fn dynamics_agree() -> Result<(), Failure> {
+fn inverse_and_forward_dynamics_agree() -> Result<(), Failure> {
     case_1(|function| {
         matches!(
             function,
@@ -185,7 +185,7 @@ fn every_partition_agrees() -> Result<(), Failure> {
 }
 
 #[test]
-fn all_functions_are_compared() -> Result<(), Failure> {
+fn the_reference_covers_all_functions() -> Result<(), Failure> {
     let model = dualv()?;
     let expected = Expected::new(model, robots::dualv())?;
     let all: Vec<Sample> = samples(&robots::dualv(), &expected.parameters(), 1, 41, true)?;
@@ -199,7 +199,7 @@ fn all_functions_are_compared() -> Result<(), Failure> {
 }
 
 #[test]
-fn joints_of_the_model_close_the_reference() -> Result<(), Failure> {
+fn model_joints_equal_those_of_the_reference() -> Result<(), Failure> {
     let mechanism = robots::dualv();
     let expected = Expected::new(dualv()?, mechanism.clone())?;
     for sample in samples(

@@ -51,7 +51,7 @@ fn at_once(function: &CompiledFunction, all: &[Sample]) -> Result<Vec<f64>, Fail
 }
 
 #[test]
-fn blocks_give_what_single_samples_give() -> Result<(), Failure> {
+fn blocks_and_single_samples_give_equal_results() -> Result<(), Failure> {
     let model = dualv()?;
     let all = dualv_samples()?;
     for function in &model.functions {
@@ -75,7 +75,7 @@ fn blocks_give_what_single_samples_give() -> Result<(), Failure> {
 }
 
 #[test]
-fn the_first_sample_out_of_reach_is_named() -> Result<(), Failure> {
+fn the_first_sample_out_of_reach_is_reported() -> Result<(), Failure> {
     let mut all = dualv_samples()?;
     for far in [BLOCK + 3, 2 * BLOCK] {
         all[far].state.pose[0] = 3.0;
@@ -109,7 +109,7 @@ fn the_first_sample_out_of_reach_is_named() -> Result<(), Failure> {
 }
 
 #[test]
-fn what_follows_a_state_out_of_reach_counts_for_nothing() -> Result<(), Failure> {
+fn samples_after_an_unreachable_state_are_ignored() -> Result<(), Failure> {
     let model = dualv()?;
     let function = Function::IdmRedPlatform(Columns::Standard);
     let function = model
@@ -130,7 +130,7 @@ fn what_follows_a_state_out_of_reach_counts_for_nothing() -> Result<(), Failure>
 }
 
 #[test]
-fn compiled_functions_name_what_is_wrong() {
+fn compiled_functions_return_specific_errors() {
     use overact::Error;
     let still = [0.0; 3];
     let out_of_reach = DualV::joints(&[3.0, 0.0, 0.0]);
@@ -162,7 +162,7 @@ fn compiled_functions_name_what_is_wrong() {
 }
 
 #[test]
-fn a_singular_partition_is_an_error_and_case_1_is_not() {
+fn singular_partitions_fail_only_in_the_actuator_projection() {
     use overact::Error;
     // The robot is regular here, but the first three actuators alone are not; six digits give the
     // singularity to nine.

@@ -5,7 +5,7 @@ use overact_tests::reference::robots;
 use overact_tests::support::{Failure, conversion, dualv};
 
 #[test]
-fn description_and_reference_are_the_same_robot() -> Result<(), Failure> {
+fn description_and_reference_have_the_same_geometry() -> Result<(), Failure> {
     let by_hand = robots::dualv();
     let described = conversion::reference(&dualv()?.mechanism, by_hand.workspace.clone());
     let distance = conversion::distance(&described, &by_hand);
@@ -14,7 +14,7 @@ fn description_and_reference_are_the_same_robot() -> Result<(), Failure> {
 }
 
 #[test]
-fn home_configuration_closes_in_the_same_working_mode() -> Result<(), Failure> {
+fn the_home_configuration_has_the_working_mode_of_the_reference() -> Result<(), Failure> {
     let by_hand = robots::dualv();
     let expected = joint_positions(&by_hand, &by_hand.home)?;
     let found = &dualv()?.mechanism.home.joints;

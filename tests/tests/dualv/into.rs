@@ -22,7 +22,7 @@ macro_rules! the_same {
 }
 
 #[test]
-fn what_is_written_is_what_is_given_back() -> Result<(), Failure> {
+fn into_functions_write_what_the_others_return() -> Result<(), Failure> {
     let expected = Expected::new(dualv()?, robots::dualv())?;
     for sample in samples(&robots::dualv(), &expected.parameters(), STATES, 29, true)? {
         the_same! { sample:
@@ -40,7 +40,7 @@ fn what_is_written_is_what_is_given_back() -> Result<(), Failure> {
 }
 
 #[test]
-fn an_error_is_the_same() {
+fn into_functions_return_the_errors_of_the_others() {
     let still = [0.0; DualV::DOF];
     let mut written = [[0.0; DualV::PARAMETERS.len()]; DualV::DOF];
     let (far, none) = ([9.0, 0.0, 0.0], [f64::NAN, 0.0, 0.0]);

@@ -48,7 +48,7 @@ fn vector(function: &str, sample: &Sample) -> Result<DVector<f64>, Failure> {
 }
 
 #[test]
-fn rates_are_derivatives_of_joints() -> Result<(), Failure> {
+fn joint_rates_are_derivatives_of_joint_positions() -> Result<(), Failure> {
     let (mechanism, _, all) = dualv_samples(51)?;
     let mut worst = [0.0_f64; 2];
     for sample in &all {
@@ -77,7 +77,7 @@ fn rates_are_derivatives_of_joints() -> Result<(), Failure> {
 }
 
 #[test]
-fn actuators_give_back_the_platform_motion() -> Result<(), Failure> {
+fn platform_motion_is_recovered_from_actuators() -> Result<(), Failure> {
     let (mechanism, _, all) = dualv_samples(52)?;
     let mut worst = 0.0_f64;
     for sample in &all {
@@ -137,7 +137,7 @@ fn power_balance_holds() -> Result<(), Failure> {
 }
 
 #[test]
-fn mass_matrix_and_bias_make_up_the_inverse_dynamics() -> Result<(), Failure> {
+fn mass_matrix_and_bias_sum_to_the_inverse_dynamics() -> Result<(), Failure> {
     let (_, _, all) = dualv_samples(54)?;
     let mut worst = [0.0_f64; 3];
     for sample in &all {
@@ -211,7 +211,7 @@ fn noisy_actuators_give_the_least_squares_pose() -> Result<(), Failure> {
 }
 
 #[test]
-fn null_space_spans_what_does_not_move_the_robot() -> Result<(), Failure> {
+fn null_space_torques_do_not_move_the_robot() -> Result<(), Failure> {
     let (_, _, all) = dualv_samples(58)?;
     let mut worst = [0.0_f64; 3];
     for sample in &all {

@@ -100,7 +100,7 @@ fn coefficient(model: &RobotModel, base: &str, regrouped: &str) -> f64 {
 }
 
 #[test]
-fn regroupings_are_the_constants_of_the_geometry() -> Result<(), Failure> {
+fn regrouping_coefficients_are_geometric_constants() -> Result<(), Failure> {
     let model = dualv()?;
     // r_p^2/d3 is recognised as 121/2800 and correctly rounded.
     let squared = 121.0 / 2800.0;
@@ -136,7 +136,7 @@ fn regroupings_are_the_constants_of_the_geometry() -> Result<(), Failure> {
 }
 
 #[test]
-fn kept_and_regrouped_parameters_are_all_parameters() -> Result<(), Failure> {
+fn kept_and_regrouped_parameters_partition_all_parameters() -> Result<(), Failure> {
     let model = dualv()?;
     let mut accounted: Vec<BodyParameter> = model.base.iter().map(|b| b.parameter).collect();
     for base in &model.base {

@@ -36,7 +36,7 @@ fn regressor(model: &RobotModel) -> Result<&CompiledFunction, Failure> {
 }
 
 #[test]
-fn description_of_the_dualv() -> Result<(), Failure> {
+fn dualv_description_matches_its_snapshot() -> Result<(), Failure> {
     let source = overact_tests::support::description("dualv")?;
     let parsed = description::parse(&source).map_err(|e| e.render_plain(&source))?;
     insta::assert_snapshot!(described(&parsed)?);
@@ -71,7 +71,7 @@ fn described(robot: &Description) -> Result<String, Failure> {
 }
 
 #[test]
-fn mechanism_of_the_dualv() -> Result<(), Failure> {
+fn dualv_mechanism_matches_its_snapshot() -> Result<(), Failure> {
     insta::assert_snapshot!(legs(&dualv()?.mechanism)?);
     Ok(())
 }
@@ -103,14 +103,14 @@ fn legs(mechanism: &Mechanism) -> Result<String, Failure> {
 }
 
 #[test]
-fn derivation_of_the_dualv() -> Result<(), Failure> {
+fn derived_dualv_expressions_match_their_snapshot() -> Result<(), Failure> {
     let model = dualv()?;
-    let derived_text = |wanted: Function, picked: &dyn Fn(usize, usize) -> bool| {
+    let derived_text = |wanted: Function, selected: &dyn Fn(usize, usize) -> bool| {
         let arena = Arena::new();
         let (mechanism, selection) = (&model.mechanism, &model.selection);
         let derived = derive(&arena, mechanism, selection, wanted, MotionInput::Joints)
             .map_err(|e| format!("{e:?}"))?;
-        Ok::<String, Failure>(printed(&derived, picked))
+        Ok::<String, Failure>(printed(&derived, selected))
     };
     let jacobian = derived_text(Function::InverseJacobian, &|_, _| true)?;
     let regressor = Function::IdmRedPlatform(Columns::Standard);
@@ -123,17 +123,17 @@ fn derivation_of_the_dualv() -> Result<(), Failure> {
     Ok(())
 }
 
-fn printed(derived: &Derived<'_>, picked: &dyn Fn(usize, usize) -> bool) -> String {
+fn printed(derived: &Derived<'_>, selected: &dyn Fn(usize, usize) -> bool) -> String {
     let columns = derived.shape.1;
     let entries = derived.entries.iter().enumerate();
     entries
-        .filter(|(at, _)| picked(at / columns, at % columns))
+        .filter(|(at, _)| selected(at / columns, at % columns))
         .map(|(at, e)| format!("[{}, {}] {e}\n", at / columns, at % columns))
         .collect()
 }
 
 #[test]
-fn lowering_of_the_inverse_jacobian() -> Result<(), Failure> {
+fn lowered_inverse_jacobian_matches_its_snapshot() -> Result<(), Failure> {
     let is_wanted =
         |function, from| function == Function::InverseJacobian && from == MotionInput::Joints;
     let model = searched(is_wanted)?;
@@ -195,7 +195,7 @@ const fn operation(operation: &Operation) -> &'static str {
 
 /// Full tier, with the searched model; the default tier compares the text of the module.
 #[test]
-fn cost_of_all_functions() -> Result<(), Failure> {
+fn costs_of_all_functions_match_their_snapshot() -> Result<(), Failure> {
     if !is_full() {
         return Ok(());
     }
@@ -239,7 +239,7 @@ fn cost_of_all_functions() -> Result<(), Failure> {
 
 /// Full tier, like the cost of all functions.
 #[test]
-fn regressor_from_joints_stays_as_small_as_it_is() -> Result<(), Failure> {
+fn the_regressor_from_joints_keeps_its_operation_counts() -> Result<(), Failure> {
     if !is_full() {
         return Ok(());
     }
@@ -255,7 +255,7 @@ fn regressor_from_joints_stays_as_small_as_it_is() -> Result<(), Failure> {
 const OPERATIONS: usize = 404;
 
 #[test]
-fn emission_of_two_functions() -> Result<(), Failure> {
+fn emitted_code_of_two_functions_matches_its_snapshot() -> Result<(), Failure> {
     let both = [Function::ProjectPlatform, Function::IdmRedPayload];
     let model = searched(|function, _| both.contains(&function))?;
     let file = rust::file(&model, "robots/dualv.toml");
@@ -279,7 +279,7 @@ fn emission_of_two_functions() -> Result<(), Failure> {
 }
 
 #[test]
-fn evaluation_of_the_regressor() -> Result<(), Failure> {
+fn regressor_values_match_their_snapshot() -> Result<(), Failure> {
     let model = dualv()?;
     let function = regressor(model)?;
     let state = &random_states(&model.mechanism, 1, 7)[0];
@@ -312,7 +312,7 @@ fn digits(value: f64) -> String {
 }
 
 #[test]
-fn base_parameters_of_the_dualv() -> Result<(), Failure> {
+fn dualv_base_parameters_match_their_snapshot() -> Result<(), Failure> {
     let model = dualv()?;
     let mut text = String::new();
     for base in &model.base {

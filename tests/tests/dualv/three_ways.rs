@@ -69,7 +69,7 @@ fn first_difference(a: &str, b: &str) -> Option<String> {
 
 /// Uses the emission of the build script, because a thorough search takes long.
 #[test]
-fn build_script_and_checked_in_file_hold_the_tokens_of_the_emission() -> Result<(), Failure> {
+fn build_script_and_checked_in_file_equal_the_emitted_code() -> Result<(), Failure> {
     let built = parsed(partitions::KEPT_123)?;
     let checked_in = parsed(&fs::read_to_string(repository("generated/src/dualv.rs"))?)?;
     let mut others = vec![("generated/", checked_in)];
@@ -88,7 +88,7 @@ fn build_script_and_checked_in_file_hold_the_tokens_of_the_emission() -> Result<
 }
 
 #[test]
-fn macro_items_are_those_of_the_module() -> Result<(), Failure> {
+fn macro_and_module_have_equal_items() -> Result<(), Failure> {
     // The macro adds these items to the user's struct, whose name they have.
     let items = normalised(rust::items(
         dualv()?,
@@ -101,7 +101,7 @@ fn macro_items_are_those_of_the_module() -> Result<(), Failure> {
 }
 
 #[test]
-fn all_ways_give_bit_identical_results() -> Result<(), Failure> {
+fn macro_build_script_and_module_give_identical_bits() -> Result<(), Failure> {
     let model = dualv()?;
     let expected = Expected::new(model, robots::dualv())?;
     let all = samples(
@@ -130,7 +130,7 @@ fn all_ways_give_bit_identical_results() -> Result<(), Failure> {
 }
 
 #[test]
-fn models_say_the_same_of_the_robot() {
+fn macro_build_script_and_module_give_equal_robot_info() {
     let made = DualV.info();
     for info in [
         partitions::kept_123::DualV.info(),
@@ -145,7 +145,7 @@ fn models_say_the_same_of_the_robot() {
 }
 
 #[test]
-fn trait_and_functions_give_the_same_numbers() -> Result<(), Failure> {
+fn model_trait_and_functions_give_equal_numbers() -> Result<(), Failure> {
     let expected = Expected::new(dualv()?, robots::dualv())?;
     let all = samples(&robots::dualv(), &expected.parameters(), 20, 72, true)?;
     let sizes = DualV.info().sizes;

@@ -99,33 +99,33 @@ fn compare(stem: &str, frames: &str, compiled: &dyn Backend) -> Result<(), Failu
 }
 
 #[test]
-fn skeleton_with_chains() -> Result<(), Failure> {
+fn compiled_frames_agree_for_a_skeleton_with_chains() -> Result<(), Failure> {
     compare("ankle", framed::ankle::FRAMES, &Ankle)
 }
 
 #[test]
-fn platform_that_translates() -> Result<(), Failure> {
+fn compiled_frames_agree_for_a_translational_platform() -> Result<(), Failure> {
     compare("delta", framed::delta::FRAMES, &Delta)
 }
 
 #[test]
-fn redundant_planar_platform() -> Result<(), Failure> {
+fn compiled_frames_agree_for_a_redundant_planar_platform() -> Result<(), Failure> {
     compare("dualv", framed::dualv::FRAMES, &DualV)
 }
 
 #[test]
-fn spatial_platform() -> Result<(), Failure> {
+fn compiled_frames_agree_for_a_spatial_platform() -> Result<(), Failure> {
     compare("hexapod", framed::hexapod::FRAMES, &Hexapod)
 }
 
 #[test]
-fn serial_robot() -> Result<(), Failure> {
+fn compiled_frames_agree_for_a_serial_robot() -> Result<(), Failure> {
     compare("rx90", framed::rx90::FRAMES, &Rx90)
 }
 
 /// Functions of the pose alone in 32 bits; other inputs are converted in the same way.
 #[test]
-fn single_precision() -> Result<(), Failure> {
+fn single_precision_frames_agree_within_rounding() -> Result<(), Failure> {
     let joints = [0.3_f64, -0.7, 1.1, 0.4, -0.9, 0.2];
     let short = joints.map(|q| q as f32);
     let (long, short) = (

@@ -7,7 +7,7 @@ use overact_tests::support::{description, model_with};
 use std::fmt::Write as _;
 
 #[test]
-fn counts_of_four_robots() -> Result<(), Failure> {
+fn operation_counts_of_four_robots_match_the_snapshot() -> Result<(), Failure> {
     let robots = [
         ("rx90", framed::rx90::FRAMES),
         ("dualv", framed::dualv::FRAMES),

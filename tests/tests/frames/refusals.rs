@@ -13,7 +13,7 @@ fn errors(stem: &str, more: &str) -> Result<String, Failure> {
         .map_or_else(String::new, |errors| errors.render_plain(&source)))
 }
 
-fn says(stem: &str, more: &str, all: &[&str]) -> Result<(), Failure> {
+fn assert_rejected(stem: &str, more: &str, all: &[&str]) -> Result<(), Failure> {
     let found = errors(stem, more)?;
     for part in all {
         assert!(found.contains(part), "{stem}: no `{part}` in\n{found}");
@@ -22,9 +22,9 @@ fn says(stem: &str, more: &str, all: &[&str]) -> Result<(), Failure> {
 }
 
 #[test]
-fn unknown_bodies_are_refused_with_those_that_exist() -> Result<(), Failure> {
+fn unknown_bodies_are_rejected_with_the_available_ones() -> Result<(), Failure> {
     let text = "[frame.tool]\nbody = \"hand\"\n";
-    says(
+    assert_rejected(
         "rx90",
         text,
         &[
@@ -34,13 +34,13 @@ fn unknown_bodies_are_refused_with_those_that_exist() -> Result<(), Failure> {
         ],
     )?;
     let text = "[frame.tool]\nbody = \"leg1.9\"\n";
-    says("dualv", text, &["the robot has no body `leg1.9`", "leg1."])?;
+    assert_rejected("dualv", text, &["the robot has no body `leg1.9`", "leg1."])?;
     let text = "[frame.tool]\nbody = \"platform\"\n";
-    says("rx90", text, &["the robot has no body `platform`"])
+    assert_rejected("rx90", text, &["the robot has no body `platform`"])
 }
 
 #[test]
-fn names_of_other_functions_are_refused() -> Result<(), Failure> {
+fn frame_names_that_clash_with_functions_are_rejected() -> Result<(), Failure> {
     for (name, taken) in [
         ("inverse", "inverse_jacobian"),
         ("project", "project_torques"),
@@ -53,26 +53,26 @@ fn names_of_other_functions_are_refused() -> Result<(), Failure> {
             &format!("the code of every robot already has `{taken}`"),
             "choose another name",
         ];
-        says("dualv", &text, &parts.map(|part| part as &str))?;
+        assert_rejected("dualv", &text, &parts.map(|part| part as &str))?;
     }
     Ok(())
 }
 
 #[test]
-fn names_are_identifiers() -> Result<(), Failure> {
+fn frame_names_must_be_identifiers() -> Result<(), Failure> {
     let text = "[frame.\"tool tip\"]\n";
-    says(
+    assert_rejected(
         "dualv",
         text,
         &["`tool tip` cannot be the name of a frame", "use letters"],
     )?;
     let text = "[frame.2]\n";
-    says("dualv", text, &["`2` cannot be the name of a frame"])
+    assert_rejected("dualv", text, &["`2` cannot be the name of a frame"])
 }
 
 #[test]
-fn unknown_keys_and_units_are_refused() -> Result<(), Failure> {
-    says(
+fn unknown_keys_and_wrong_units_are_rejected() -> Result<(), Failure> {
+    assert_rejected(
         "dualv",
         "[frame.tool]\nat = [0, 0, \"1 kg\"]\nbdy = \"platform\"\n",
         &["bdy", "1 kg"],
@@ -80,7 +80,7 @@ fn unknown_keys_and_units_are_refused() -> Result<(), Failure> {
 }
 
 #[test]
-fn functions_of_missing_frames_are_refused() -> Result<(), Failure> {
+fn functions_of_missing_frames_are_rejected() -> Result<(), Failure> {
     let source = description("dualv")?;
     let choice = Choice::new(["tool_pose"]).map_err(|unknown| format!("{unknown:?}"))?;
     let request = Request {

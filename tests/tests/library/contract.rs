@@ -26,7 +26,7 @@ const TOLERANCE: f64 = 1e-10;
 const FAR_TOLERANCE: f64 = 1e-7;
 
 /// Distance of a pose far from the workspace, m.
-const FAR: f64 = 10.0;
+const UNREACHABLE_DISTANCE: f64 = 10.0;
 
 overact_tests::library!(check);
 
@@ -97,12 +97,12 @@ struct Contract<'a> {
 impl Contract<'_> {
     /// Checks that all backends give the same information.
     fn check_info(&self) {
-        let mut said = self
+        let mut infos = self
             .backends
             .iter()
             .map(|(name, model)| (name, format!("{:#?}", model.info())));
-        let first = said.next();
-        for (name, info) in said {
+        let first = infos.next();
+        for (name, info) in infos {
             let (other, expected) = first.as_ref().expect("there is a first backend");
             assert_eq!(
                 &info, expected,
@@ -192,8 +192,8 @@ impl Contract<'_> {
                 );
             }
         }
-        let nothing = vec![Vec::new(); inputs.len()];
-        assert!(ask(&nothing, 0, "no samples")?.is_empty());
+        let empty_inputs = vec![Vec::new(); inputs.len()];
+        assert!(ask(&empty_inputs, 0, "no samples")?.is_empty());
         Ok(())
     }
 
@@ -294,7 +294,7 @@ impl Contract<'_> {
             return Ok(());
         };
         let size = self.sizes.pose;
-        for far in [1.5, FAR, 1e3] {
+        for far in [1.5, UNREACHABLE_DISTANCE, 1e3] {
             let mut inputs = inputs.to_vec();
             inputs[at][size] += far;
             let _ = ask(&inputs, width * SAMPLES, &format!("a pose off by {far}"));
@@ -424,7 +424,7 @@ impl Contract<'_> {
         let Some((first, wanted)) = answers.next() else {
             panic!("no backend");
         };
-        let tolerance = if case.contains(&format!("a pose off by {FAR}")) {
+        let tolerance = if case.contains(&format!("a pose off by {UNREACHABLE_DISTANCE}")) {
             FAR_TOLERANCE
         } else {
             TOLERANCE
@@ -432,7 +432,7 @@ impl Contract<'_> {
         for (name, found) in answers {
             let is_same = match (&wanted, &found) {
                 (Ok(wanted), Ok(found)) => difference(found, wanted) <= tolerance,
-                (Err(wanted), Err(found)) => is_alike(wanted, found),
+                (Err(wanted), Err(found)) => is_same_error(wanted, found),
                 _ => false,
             };
             let stem = self.stem;
@@ -458,7 +458,7 @@ fn is_length(answer: &Answer) -> bool {
 }
 
 /// Whether two errors are equal except for rounding of a condition.
-pub(super) fn is_alike(one: &SampleError, other: &SampleError) -> bool {
+pub(super) fn is_same_error(one: &SampleError, other: &SampleError) -> bool {
     let error = match (one.error, other.error) {
         (Error::OutOfReach { leg }, Error::OutOfReach { leg: other })
         | (Error::SingularLeg { leg, .. }, Error::SingularLeg { leg: other, .. }) => leg == other,

@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 1e-10;
 const STATES: usize = 10;
 
 /// One in this many formulations of a robot is tested; all for robots with few.
-const PART: usize = 12;
+const TESTED_FRACTION: usize = 12;
 
 overact_tests::library!(check);
 
@@ -96,7 +96,7 @@ fn formulated(
     let own = &model.selection.formulation;
     let wanted = program(own).map_err(|error| format!("{stem}: {error:?}"))?;
     let others = formulations(&model.mechanism, function, own);
-    let step = others.len().div_ceil(PART).max(1);
+    let step = others.len().div_ceil(TESTED_FRACTION).max(1);
     // The last ones have the most changes.
     for formulation in others.iter().rev().step_by(step) {
         // A formulation that is impossible for a leg is not a candidate.

@@ -41,7 +41,7 @@ const ROBOTS: [&[&str]; 2] = [
 ];
 
 #[test]
-fn known_parameters_give_the_same_motion_in_fewer_operations() -> Result<(), Failure> {
+fn constant_parameters_give_the_same_motion_in_fewer_operations() -> Result<(), Failure> {
     let mut table = String::new();
     for stem in by_tier(ROBOTS) {
         let (model, expected) = described(stem)?;
@@ -97,7 +97,7 @@ fn known_parameters_give_the_same_motion_in_fewer_operations() -> Result<(), Fai
 }
 
 #[test]
-fn compiled_code_takes_no_parameters() -> Result<(), overact::Error> {
+fn compiled_constant_parameters_give_the_same_dynamics() -> Result<(), overact::Error> {
     let values: Vec<f64> = Rx90::PARAMETERS
         .iter()
         .map(|parameter| {

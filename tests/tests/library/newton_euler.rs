@@ -25,43 +25,43 @@ const STATES: usize = 200;
 struct BranchedArm;
 
 #[test]
-fn rx90() -> Result<(), Failure> {
+fn rx90_agrees_with_newton_euler() -> Result<(), Failure> {
     let (model, expected) = described("rx90")?;
     agree(model, expected, &overact_compiled::Rx90)
 }
 
 #[test]
-fn tx40() -> Result<(), Failure> {
+fn tx40_agrees_with_newton_euler() -> Result<(), Failure> {
     let (model, expected) = described("tx40")?;
     agree(model, expected, &overact_compiled::Tx40)
 }
 
 #[test]
-fn dvrk_mtm() -> Result<(), Failure> {
+fn dvrk_mtm_agrees_with_newton_euler() -> Result<(), Failure> {
     let (model, expected) = described("dvrk_mtm")?;
     agree(model, expected, &overact_compiled::DvrkMtm)
 }
 
 #[test]
-fn kuka_lwr() -> Result<(), Failure> {
+fn kuka_lwr_agrees_with_newton_euler() -> Result<(), Failure> {
     let (model, expected) = described("kuka_lwr")?;
     agree(model, expected, &overact_compiled::KukaLwr)
 }
 
 #[test]
-fn stanford() -> Result<(), Failure> {
+fn stanford_agrees_with_newton_euler() -> Result<(), Failure> {
     let (model, expected) = described("stanford")?;
     agree(model, expected, &overact_compiled::Stanford)
 }
 
 #[test]
-fn emps() -> Result<(), Failure> {
+fn emps_agrees_with_newton_euler() -> Result<(), Failure> {
     let (model, expected) = described("emps")?;
     agree(model, expected, &overact_compiled::Emps)
 }
 
 #[test]
-fn branched_arm() -> Result<(), Failure> {
+fn branched_arm_agrees_with_newton_euler() -> Result<(), Failure> {
     let name = "tests/fixtures/branched_arm.toml";
     let text = std::fs::read_to_string(repository(name))?;
     let model = model_of(&overact_codegen::Source::new(name, text))?;

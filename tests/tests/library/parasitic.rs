@@ -46,7 +46,7 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
             assert!(off < 1e-8, "{stem}: column {at} of A is off by {off:e}");
         }
         refused(stem, compiled, pose)?;
-        brought_back(stem, compiled, &sample.start, &sample.actuators, pose)?;
+        check_recovered_pose(stem, compiled, &sample.start, &sample.actuators, pose)?;
     }
     Ok(())
 }
@@ -77,7 +77,7 @@ fn refused(stem: &str, robot: &dyn Model, pose: &[f64]) -> Result<(), Failure> {
 }
 
 /// From a near pose off the closures, forward kinematics finds that of the actuators.
-fn brought_back(
+fn check_recovered_pose(
     stem: &str,
     robot: &dyn Model,
     start: &[f64],

@@ -48,16 +48,16 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
     }
     let is_square = sizes.actuators == sizes.dof;
     if is_square && sizes.dof > 3 {
-        passes_singular_blocks(stem, compiled)?;
+        assert_steps_past_singular_blocks(stem, compiled)?;
     }
     if is_square && model.served(Function::PoseInClosedForm).is_none() {
-        fits_or_refuses(stem, compiled)?;
+        assert_exact_or_error_out_of_reach(stem, compiled)?;
     }
     Ok(())
 }
 
 /// For unreachable actuator positions, forward kinematics finds a pose that has them, or an error.
-fn fits_or_refuses(stem: &str, robot: &dyn Model) -> Result<(), Failure> {
+fn assert_exact_or_error_out_of_reach(stem: &str, robot: &dyn Model) -> Result<(), Failure> {
     let info = robot.info();
     let mut home = vec![0.0; info.sizes.actuators];
     robot
@@ -93,7 +93,7 @@ fn fits_or_refuses(stem: &str, robot: &dyn Model) -> Result<(), Failure> {
 ///
 /// Two actuators' rows are parallel in the first two coordinates, by which the step may divide,
 /// while J_p^inv is regular.
-fn passes_singular_blocks(stem: &str, robot: &dyn Model) -> Result<(), Failure> {
+fn assert_steps_past_singular_blocks(stem: &str, robot: &dyn Model) -> Result<(), Failure> {
     let sizes = robot.info().sizes;
     let home = robot.info().home_pose.to_vec();
     let on_circle = |radius: f64, along: f64| {
@@ -133,9 +133,9 @@ fn passes_singular_blocks(stem: &str, robot: &dyn Model) -> Result<(), Failure> 
                     high = middle
                 }
             }
-            for beside in [0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4] {
-                steps_or_refuses(stem, robot, &at(low + beside))?;
-                returns(stem, robot, &at(low + beside))?;
+            for offset in [0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4] {
+                assert_exact_step_or_error(stem, robot, &at(low + offset))?;
+                assert_pose_is_recovered(stem, robot, &at(low + offset))?;
             }
             found += 1;
         }
@@ -151,7 +151,7 @@ fn is_reached(robot: &dyn Model, pose: &[f64]) -> bool {
 }
 
 /// The step is right or an error, after which forward kinematics uses normal equations.
-fn steps_or_refuses(stem: &str, robot: &dyn Model, pose: &[f64]) -> Result<(), Failure> {
+fn assert_exact_step_or_error(stem: &str, robot: &dyn Model, pose: &[f64]) -> Result<(), Failure> {
     let (n, r) = (robot.info().sizes.actuators, robot.info().sizes.dof);
     let (mut actuators, mut rows) = (vec![0.0; n], vec![0.0; n * r]);
     for (function, output) in [
@@ -176,7 +176,7 @@ fn steps_or_refuses(stem: &str, robot: &dyn Model, pose: &[f64]) -> Result<(), F
 }
 
 /// Forward kinematics from near a pose finds it.
-fn returns(stem: &str, robot: &dyn Model, pose: &[f64]) -> Result<(), Failure> {
+fn assert_pose_is_recovered(stem: &str, robot: &dyn Model, pose: &[f64]) -> Result<(), Failure> {
     let mut actuators = vec![0.0; robot.info().sizes.actuators];
     let done = robot.evaluate(Function::ActuatorPositions, &[pose], &mut actuators);
     done.map_err(|error| error.error)?;

@@ -2,7 +2,7 @@
 //!
 //! Compiled and interpreted robots give the same error.
 
-use super::contract::is_alike;
+use super::contract::is_same_error;
 use overact::{Error, Function, Model, SampleError};
 use overact_robot::InterpretedRobot;
 use overact_tests::support::library::described;
@@ -29,7 +29,7 @@ fn check(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
                 (Err(one), Err(other)) => {
                     let at_limit = is_at_limit(&one.error) && is_at_limit(&other.error);
                     assert!(
-                        at_limit || is_alike(one, other),
+                        at_limit || is_same_error(one, other),
                         "{case}: {one:?}, {other:?}"
                     );
                     refused += 1;
@@ -131,7 +131,7 @@ fn forward_kinematics(
         };
         match (&one, &other) {
             (Err(one), Err(other)) => {
-                let is_same = is_alike(&with_sample(one), &with_sample(other));
+                let is_same = is_same_error(&with_sample(one), &with_sample(other));
                 assert!(is_same || is_at_limit(one) && is_at_limit(other), "{case}");
             }
             (Ok(one), Ok(other)) => {

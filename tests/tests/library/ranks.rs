@@ -29,7 +29,7 @@ use overact_tier::is_full;
 /// Rows per column; enough to avoid small singular values by chance.
 const ROWS: usize = 3;
 /// Number of base parameters from which ranks take seconds.
-const LONG: usize = 60;
+const SLOW_RANK: usize = 60;
 
 /// Parameter lists.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +79,7 @@ fn check(stem: &str, expected: [usize; 3]) -> Result<(), Failure> {
         return Ok(());
     }
     let lists = [Lists::All, Lists::Real, Lists::Frictionless];
-    let is_short = expected[0] < LONG;
+    let is_short = expected[0] < SLOW_RANK;
     let compared = lists.into_iter().zip(expected);
     for (lists, expected) in
         compared.filter(|(lists, _)| is_full() || is_short || matches!(lists, Lists::Real))
@@ -139,51 +139,51 @@ fn observation(expected: &Expected, all: &[Sample]) -> Result<DMatrix<f64>, Fail
 }
 
 #[test]
-fn five_bar_in_a_vertical_plane() -> Result<(), Failure> {
+fn vertical_five_bar_has_its_ranks() -> Result<(), Failure> {
     check("five_bar", [25, 23, 11])
 }
 
 #[test]
-fn three_legs_to_a_point_in_a_horizontal_plane() -> Result<(), Failure> {
+fn horizontal_three_leg_point_has_its_ranks() -> Result<(), Failure> {
     check("three_leg_point", [31, 28, 10])
 }
 
 #[test]
-fn planar_3prr() -> Result<(), Failure> {
+fn planar_3prr_has_its_ranks() -> Result<(), Failure> {
     check("planar_3prr", [41, 38, 13])
 }
 
 #[test]
-fn planar_4prr() -> Result<(), Failure> {
+fn planar_4prr_has_its_ranks() -> Result<(), Failure> {
     check("planar_4prr", [53, 49, 16])
 }
 
 #[test]
-fn delta_with_rods() -> Result<(), Failure> {
+fn delta_with_rods_has_its_ranks() -> Result<(), Failure> {
     check("delta", [67, 61, 34])
 }
 
 #[test]
-fn six_ups() -> Result<(), Failure> {
+fn six_ups_has_its_ranks() -> Result<(), Failure> {
     check("hexapod", [148, 142, 88])
 }
 
 #[test]
-fn eight_ups() -> Result<(), Failure> {
+fn eight_ups_has_its_ranks() -> Result<(), Failure> {
     check("octopod", [194, 186, 114])
 }
 
 #[test]
-fn six_rus() -> Result<(), Failure> {
+fn six_rus_has_its_ranks() -> Result<(), Failure> {
     check("reachy_mini", [142, 130, 76])
 }
 
 #[test]
-fn rx90() -> Result<(), Failure> {
+fn rx90_has_its_ranks() -> Result<(), Failure> {
     check("rx90", [58, 58, 40])
 }
 
 #[test]
-fn emps() -> Result<(), Failure> {
+fn emps_has_its_ranks() -> Result<(), Failure> {
     check("emps", [4, 4, 1])
 }

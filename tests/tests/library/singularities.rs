@@ -277,16 +277,16 @@ fn check_leg(
     Ok(())
 }
 
-const BOTH: [&str; 2] = [
+const REGRESSORS: [&str; 2] = [
     "inverse_jacobian_from_joints",
     "idm_red_platform_from_joints",
 ];
 
 #[test]
-fn a_stretched_arm_of_the_five_bar_is_named() -> Result<(), Failure> {
+fn a_stretched_arm_of_the_five_bar_is_reported() -> Result<(), Failure> {
     let robot = Robot::new("five_bar", &FiveBar)?;
-    check_leg(&robot, &BOTH, 1, 0.0, "left")?;
-    check_leg(&robot, &BOTH, 3, 0.0, "right")?;
+    check_leg(&robot, &REGRESSORS, 1, 0.0, "left")?;
+    check_leg(&robot, &REGRESSORS, 3, 0.0, "right")?;
     // From the pose, positions beyond the stretched arm are out of reach: 0.45 m from the motor.
     for (x, leg) in [(-0.1 + 0.451, "left"), (0.1 - 0.451, "right")] {
         let sample = robot.at(&[x, 0.0]);
@@ -296,23 +296,23 @@ fn a_stretched_arm_of_the_five_bar_is_named() -> Result<(), Failure> {
 }
 
 #[test]
-fn a_stretched_leg_of_the_3rrr_is_named() -> Result<(), Failure> {
+fn a_stretched_leg_of_the_3rrr_is_reported() -> Result<(), Failure> {
     let robot = Robot::new("planar_3rrr", &Planar3Rrr)?;
     for (leg, name) in ["leg1", "leg2", "leg3"].into_iter().enumerate() {
-        check_leg(&robot, &BOTH, 3 * leg + 1, 0.0, name)?;
+        check_leg(&robot, &REGRESSORS, 3 * leg + 1, 0.0, name)?;
     }
     Ok(())
 }
 
 /// The drive's rate is the velocity along the rod even there; the cross joint's rate is lost.
 #[test]
-fn a_rod_of_the_hexapod_along_the_first_axis_of_its_joint_is_named() -> Result<(), Failure> {
+fn a_hexapod_rod_along_its_first_joint_axis_is_reported() -> Result<(), Failure> {
     let robot = Robot::new("hexapod", &Hexapod)?;
     for leg in [0, 3] {
         let name = format!("leg{}", leg + 1);
         let joint = 3 * leg + 1;
         let singular = std::f64::consts::FRAC_PI_2;
-        check_leg(&robot, &BOTH[1..], joint, singular, &name)?;
+        check_leg(&robot, &REGRESSORS[1..], joint, singular, &name)?;
         let sample = robot.with_joint(joint, singular);
         robot.assert_regular("inverse_jacobian_from_joints", &sample)?;
     }
@@ -340,8 +340,8 @@ fn check_partition(
     };
     assert!(named.iter().eq(kept.iter().copied()));
     assert!(condition > 1e9, "{condition:e}");
-    let beside = robot.at(&path(t + 1e-3));
-    robot.assert_regular("idm_red_actuators", &beside)?;
+    let nearby = robot.at(&path(t + 1e-3));
+    robot.assert_regular("idm_red_actuators", &nearby)?;
     Ok(sample)
 }
 
@@ -366,7 +366,7 @@ fn check_robot(
 }
 
 #[test]
-fn five_bar_with_distal_links_in_line() -> Result<(), Failure> {
+fn a_five_bar_with_aligned_distal_links_is_singular() -> Result<(), Failure> {
     let robot = Robot::new("five_bar", &FiveBar)?;
     // The elbows are half a metre apart if the point is at the height of both.
     let path = |y: f64| vec![0.0, y];
@@ -379,14 +379,14 @@ fn five_bar_with_distal_links_in_line() -> Result<(), Failure> {
 }
 
 #[test]
-fn planar_3rrr_with_three_distal_links_through_a_point() -> Result<(), Failure> {
+fn a_3rrr_with_concurrent_distal_links_is_singular() -> Result<(), Failure> {
     let robot = Robot::new("planar_3rrr", &Planar3Rrr)?;
     let path = |phi: f64| vec![0.02, -0.01, phi];
     check_robot(&robot, path, [0.0, 1.0])
 }
 
 #[test]
-fn hexapod_turned_by_a_right_angle() -> Result<(), Failure> {
+fn a_hexapod_rotated_by_a_right_angle_is_singular() -> Result<(), Failure> {
     let robot = Robot::new("hexapod", &Hexapod)?;
     let turned = |phi: f64| {
         let (sine, cosine) = (0.5 * phi).sin_cos();
@@ -397,7 +397,7 @@ fn hexapod_turned_by_a_right_angle() -> Result<(), Failure> {
 
 /// Each partition of the DualV has its own singular places, where the others are regular.
 #[test]
-fn every_partition_of_the_dualv_is_singular_elsewhere() -> Result<(), Failure> {
+fn dualv_partitions_are_singular_at_different_poses() -> Result<(), Failure> {
     let source = description("dualv")?;
     let path = |phi: f64| vec![0.01, 0.02, phi];
     let partitions: [(&dyn Backend, usize, [f64; 2]); 4] = [
@@ -428,7 +428,7 @@ fn every_partition_of_the_dualv_is_singular_elsewhere() -> Result<(), Failure> {
 }
 
 #[test]
-fn octopod_tilted_until_its_kept_legs_are_singular() -> Result<(), Failure> {
+fn a_tilted_octopod_has_a_singular_partition() -> Result<(), Failure> {
     let robot = Robot::new("octopod", &Octopod)?;
     let length = 1.09_f64.sqrt();
     let tilted = |angle: f64| {

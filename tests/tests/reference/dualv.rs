@@ -34,7 +34,7 @@ fn joint(state: &State, leg: usize) -> [f64; 3] {
 }
 
 #[test]
-fn closure_equations_and_working_mode() -> Result<(), Error> {
+fn closure_equations_and_working_mode_match_the_paper() -> Result<(), Error> {
     for state in random_states(&dualv(), 50, 11)? {
         for leg in 0..4 {
             let [q1, q2, q3] = joint(&state, leg);
@@ -56,7 +56,7 @@ fn closure_equations_and_working_mode() -> Result<(), Error> {
 }
 
 #[test]
-fn jacobians_have_their_corrected_closed_forms() -> Result<(), Error> {
+fn jacobians_match_their_corrected_closed_forms() -> Result<(), Error> {
     let robot = dualv();
     for state in random_states(&robot, 50, 12)? {
         let found = state.jacobians(&robot)?;
@@ -95,7 +95,7 @@ fn jacobians_have_their_corrected_closed_forms() -> Result<(), Error> {
 }
 
 #[test]
-fn tree_torques_are_the_corrected_ones() -> Result<(), Error> {
+fn tree_torques_match_the_corrected_equations() -> Result<(), Error> {
     let robot = dualv();
     for (seed, state) in random_states(&robot, 50, 13)?.iter().enumerate() {
         let mut chi = random_parameters(&robot, seed as u64);
@@ -146,7 +146,7 @@ fn equation_51(state: &State, chi: &DVector<f64>, leg: usize) -> [f64; 3] {
 }
 
 #[test]
-fn platform_wrench_is_equation_52() -> Result<(), Error> {
+fn platform_wrench_matches_equation_52() -> Result<(), Error> {
     let robot = dualv();
     for (seed, state) in random_states(&robot, 50, 14)?.iter().enumerate() {
         let chi = random_parameters(&robot, seed as u64);
@@ -198,7 +198,7 @@ fn partition_is_singular_where_the_robot_is_regular() -> Result<(), Error> {
 }
 
 #[test]
-fn least_multipliers_are_not_least_norm() -> Result<(), Error> {
+fn minimum_norm_multipliers_do_not_give_minimum_norm_torques() -> Result<(), Error> {
     let robot = dualv();
     let mut worst = 0.0_f64;
     for (seed, state) in random_states(&robot, 50, 15)?.iter().enumerate() {
@@ -224,7 +224,7 @@ fn least_multipliers_are_not_least_norm() -> Result<(), Error> {
 }
 
 #[test]
-fn pseudo_inverses_are_those_of_22_25_and_27() -> Result<(), Error> {
+fn pseudo_inverses_match_equations_22_25_and_27() -> Result<(), Error> {
     let robot = dualv();
     for state in random_states(&robot, 20, 16)? {
         let dynamics = Dynamics::new(&robot, &state)?;

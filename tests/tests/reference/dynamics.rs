@@ -18,7 +18,7 @@ const AGREEMENT: f64 = 1e-12;
 const POWER: f64 = 1e-9;
 
 #[test]
-fn power_balances_energy() -> Result<(), Error> {
+fn motor_power_equals_the_energy_rate() -> Result<(), Error> {
     for (name, robot) in robots::all() {
         let mut worst = 0.0_f64;
         for (seed, state) in random_states(&robot, 4, 21)?.iter().enumerate() {
@@ -117,7 +117,7 @@ fn torques_of_robots_without_redundancy_are_unique() -> Result<(), Error> {
 }
 
 #[test]
-fn internal_loads_are_orthonormal_and_move_nothing() -> Result<(), Error> {
+fn internal_loads_are_orthonormal_and_cause_no_motion() -> Result<(), Error> {
     for robot in [
         robots::dualv(),
         robots::octopod(),

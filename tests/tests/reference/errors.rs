@@ -27,7 +27,7 @@ fn planar_legs_can_not_follow_a_spatial_platform() {
 }
 
 #[test]
-fn free_links_are_not_determined() {
+fn undetermined_links_are_errors() {
     let mut robot = robots::five_bar();
     // A platform point in the middle of the chain leaves the rest of the leg free.
     robot.legs[0].end = overact_tests::reference::End::Point {

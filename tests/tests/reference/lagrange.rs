@@ -44,7 +44,7 @@ fn momentum(robot: &Mechanism, state: &State, chi: &DVector<f64>) -> DVector<f64
 }
 
 #[test]
-fn platform_inputs_satisfy_lagrange() -> Result<(), Error> {
+fn platform_inputs_satisfy_lagranges_equations() -> Result<(), Error> {
     for (name, robot) in robots::all() {
         if matches!(robot.motion, Motion::Spherical | Motion::Spatial) {
             continue;

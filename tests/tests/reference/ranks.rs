@@ -13,7 +13,7 @@ use overact_tests::reference::states::random_states;
 use overact_tests::reference::{Dynamics, Error};
 
 /// Parameters of (2) and (5); a spring and other kinds of friction follow.
-const USUAL: usize = 14;
+const STANDARD_PARAMETERS: usize = 14;
 
 const TOLERANCE: f64 = 1e-9;
 
@@ -54,15 +54,15 @@ fn check(what: &str, matrix: &DMatrix<f64>, expected: usize) {
 }
 
 #[test]
-fn base_parameters_of_the_dualv() -> Result<(), Error> {
+fn dualv_parameter_subsets_have_their_ranks() -> Result<(), Error> {
     let all = observation(80)?;
     assert_eq!(all.ncols(), names(&dualv()).len() - INERTIAL);
-    let usual = |_, at| at < USUAL;
+    let usual = |_, at| at < STANDARD_PARAMETERS;
     check("all parameters", &select(&all, usual), 57);
     let real = |body: usize, at: usize| match at {
         0..INERTIAL => body < 2,
         INERTIAL => body == 0,
-        _ => at < USUAL,
+        _ => at < STANDARD_PARAMETERS,
     };
     check(
         "no passive rotors, massless third bodies",
@@ -76,7 +76,8 @@ fn base_parameters_of_the_dualv() -> Result<(), Error> {
         &select(&all, |_, at| at < INERTIAL),
         16,
     );
-    let motors_only = |body: usize, at: usize| at < INERTIAL || (body == 0 && at < USUAL);
+    let motors_only =
+        |body: usize, at: usize| at < INERTIAL || (body == 0 && at < STANDARD_PARAMETERS);
     check(
         "inertial and actuated joints' drives",
         &select(&all, motors_only),
@@ -86,7 +87,7 @@ fn base_parameters_of_the_dualv() -> Result<(), Error> {
 }
 
 #[test]
-fn regrouping_relations_of_leg_1() -> Result<(), Error> {
+fn regrouping_relations_of_leg_1_hold() -> Result<(), Error> {
     use overact_tests::reference::robots::{DUALV_LINK as D, DUALV_PLATFORM_RADIUS as RP};
     let all = observation(40)?;
     let names = names(&dualv());

@@ -273,7 +273,7 @@ mod tests {
     use super::csv;
 
     #[test]
-    fn columns_are_named_row_by_row() {
+    fn csv_columns_are_named_in_row_major_order() {
         let rows = [&[1.0, 2.0, 3.0, 4e-30][..]].into_iter();
         let expected = "j[0][0],j[0][1],j[1][0],j[1][1]\n1.0,2.0,3.0,4e-30\n";
         assert_eq!(csv("j", &[2, 2], rows), expected);

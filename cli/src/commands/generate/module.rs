@@ -257,7 +257,7 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn names_of_modules_and_descriptions() {
+    fn module_names_and_description_labels_follow_from_paths() {
         assert_eq!(module_name(Path::new("a/DualV.toml")), "dual_v");
         assert_eq!(module_name(Path::new("planar-4rrr.toml")), "planar_4rrr");
         assert_eq!(

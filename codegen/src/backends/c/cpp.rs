@@ -147,7 +147,7 @@ mod tests {
     use super::{Naming, namespace};
 
     #[test]
-    fn a_namespace_is_no_word_of_the_language() {
+    fn namespaces_avoid_cpp_keywords() {
         let of = |name: &str| namespace(&Naming::new(name));
         assert_eq!(of("DualV"), "dualv");
         assert_eq!(of("Class"), "class_robot");

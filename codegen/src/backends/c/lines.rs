@@ -86,19 +86,19 @@ mod tests {
     use super::{code, documentation, string};
 
     #[test]
-    fn comments_end_where_they_shall() {
+    fn comment_delimiters_in_documentation_are_escaped() {
         let hostile = documentation(&["a */ int x; /* b".to_owned()]);
         assert_eq!(hostile, "/**\n * a * / int x; / * b\n */\n");
     }
 
     #[test]
-    fn strings_are_what_they_were() {
+    fn string_literals_are_escaped() {
         assert_eq!(string("N m/rad"), "\"N m/rad\"");
         assert_eq!(string("a\"b\\c??/\n"), r#""a\"b\\c\?\?/ ""#);
     }
 
     #[test]
-    fn long_lines_are_broken() {
+    fn long_lines_are_wrapped() {
         let long = format!("x = {};", vec!["abcdefg"; 20].join(" + "));
         let broken = code(4, &long);
         assert!(broken.lines().count() > 1);

@@ -164,7 +164,7 @@ mod tests {
     use super::Naming;
 
     #[test]
-    fn prefixes_are_words() {
+    fn robot_names_become_snake_case_prefixes() {
         let prefix = |name: &str| Naming::new(name).prefix;
         assert_eq!(prefix("DualV"), "dualv");
         assert_eq!(prefix("FiveBar"), "five_bar");
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_prefix_is_none_of_the_library_s() {
+    fn prefixes_avoid_c_library_names() {
         let prefix = |name: &str| Naming::new(name).prefix;
         assert_eq!(prefix("Math"), "robot_math");
         assert_eq!(prefix("Tool"), "robot_tool");
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn what_c_has_is_reserved() {
+    fn c_names_are_reserved() {
         let naming = Naming::new("DualV");
         for name in [
             "cos",

@@ -93,7 +93,7 @@ mod tests {
     use super::converted;
 
     #[test]
-    fn numbers_types_and_functions_are_converted_and_nothing_else() {
+    fn only_numbers_types_and_functions_become_single_precision() {
         let code = "/* a double 1.0 */ static const double A2[3] = { -0.30000000000000004, 1e-7, 2.0 };\n\
             x_sin[2] = sin(A2[0]) - fabs(1.5e+3 * y1) + sqrt(16) ; s = \"double \\\" 1.0\"; n = 10;";
         let wanted = "/* a double 1.0 */ static const float A2[3] = { -0.3f, 1e-7f, 2.0f };\n\

@@ -361,7 +361,7 @@ mod tests {
     use super::number;
 
     #[test]
-    fn numbers_read_back_and_have_a_point_or_an_exponent() {
+    fn numbers_round_trip_and_have_a_point_or_an_exponent() {
         for value in [0.0, 1.0, -2.5, 0.1 + 0.2, 1e-300, f64::MAX, 1e22] {
             let text = number(value);
             assert_eq!(text.parse::<f64>().map(f64::to_bits), Ok(value.to_bits()));

@@ -328,7 +328,7 @@ mod tests {
     use super::{Float, number};
 
     #[test]
-    fn floats_read_back() {
+    fn floats_round_trip() {
         for value in [0.0, 1.0, -2.5, 0.1 + 0.2, 1e-300, f64::MAX] {
             let text = number(value, Float::F64).to_string().replace(' ', "");
             assert_eq!(
@@ -355,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_that_means_nothing_does_not_compile() {
+    fn non_finite_numbers_become_compile_errors() {
         for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let text = number(value, Float::F64).to_string();
             assert!(

@@ -173,7 +173,7 @@ fn is_balanced(text: &str) -> bool {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn numbers_of_a_matrix_have_the_names_of_their_columns() {
+    fn matrix_entries_are_commented_with_their_column() {
         let columns = ["m1".to_owned(), "fv_1".to_owned()];
         let statements = [
             ("output[0][1] = -x * y;", Some("fv_1")),
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn closures_begin_on_the_line_of_their_call() {
+    fn closures_start_on_the_line_of_their_call() {
         let code = "fn f() {\n    a::with_avx2(\n        #[inline(always)]\n        || {\n            \
                     let x = g(\n                [1],\n            );\n            x\n        },\n    )\n}\n";
         let wanted = "fn f() {\n    a::with_avx2(#[inline(always)] || {\n        \
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn elements_share_lines_and_nothing_is_lost() {
+    fn array_elements_are_packed_into_lines_without_loss() {
         let code = "let x = [\n    a,\n    b * c,\n    [\n        1.0,\n        2.0,\n    ],\n    d,\n];\n";
         let packed = super::pack_arrays(code);
         assert_eq!(

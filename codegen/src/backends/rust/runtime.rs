@@ -57,7 +57,7 @@ mod tests {
     use quote::quote;
 
     #[test]
-    fn the_crate_is_renamed_and_nothing_else() {
+    fn only_the_crate_path_is_replaced() {
         let tokens = quote! {
             #[doc = "::overact"]
             fn overact(a: &::overact::Error) -> [::overact::Parameter; 2] { b::overact(::core::a) }

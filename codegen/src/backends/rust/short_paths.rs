@@ -161,7 +161,7 @@ mod tests {
     use quote::quote;
 
     #[test]
-    fn paths_are_imported_unless_the_robot_has_their_name() {
+    fn paths_are_imported_unless_they_clash_with_the_robot() {
         let items = quote! {
             fn f(a: &'static [::core::primitive::f64; 2], b: &'static ::core::primitive::str) -> ::core::result::Result<[f64; 1], ::overact::Error> {
                 if ::overact::simd::four() { return ::core::result::Result::Ok([a::core::b]); }

@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn the_levers_of_the_dualv_have_names() {
+    fn dualv_lengths_and_their_products_are_named() {
         let values = [("l_ab", 0.28), ("l_bc", 0.28), ("r_p", 0.11)];
         let found = |value: f64| name(&values, value);
         assert_eq!(found(0.11).as_deref(), Some("R_P: r_p"));
@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_the_text_has_without_a_name_have_none() {
+    fn unnamed_numbers_of_the_description_stay_unnamed() {
         let named = |value: f64| {
             let dimensions = Dimensions::expressions_of(&[("pitch", 0.02)], &[50.0, 0.3]);
             dimensions.find(value).map(|d| d.name.clone())
@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn zero_and_one_are_numbers() {
+    fn trivial_factors_stay_unnamed() {
         assert_eq!(name(&[("zero", 0.0), ("one", 1.0)], 1.0), None);
         assert_eq!(name(&[("r_b", 0.2), ("r_p", 0.1)], 2.0), None);
     }

@@ -415,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_of_the_kind_that_explains_them() {
+    fn names_match_their_pattern_in_the_legend() {
         assert_eq!(first("c_phi"), Some("c_phi"));
         assert_eq!(first("c12"), Some("c#"));
         assert_eq!(first("c12o"), Some("c#"));
@@ -431,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn no_kind_hides_another() {
+    fn no_legend_pattern_shadows_another() {
         for kind in KINDS {
             let name = kind.pattern.replace(['#', '$'], "1").replace('@', "x");
             let name = name.replace('%', "vx");

@@ -314,7 +314,7 @@ mod tests {
     const OTHER: Operand = Operand::Constant(0.123);
 
     #[test]
-    fn operands_make_names() {
+    fn names_are_composed_of_operand_names() {
         use Operation::{Add, Div, Mul, Neg, Sqrt, Sub};
         let made = names(&[
             Mul(A, B),
@@ -344,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn signs_are_kept() {
+    fn negated_operands_keep_their_sign_in_names() {
         use Operation::{Add, Mul, Neg, Sub};
         let step = Operand::Step;
         let made = names(&[
@@ -367,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn what_would_need_parentheses_or_has_no_name_is_numbered() {
+    fn nested_and_unnamed_values_are_numbered() {
         use Operation::{Add, Div, Mul, Sub};
         let step = Operand::Step;
         let made = names(&[

@@ -117,7 +117,7 @@ fn meanings(model: &RobotModel, state: &State) -> HashMap<String, f64> {
 }
 
 #[test]
-fn names_are_true() {
+fn names_describe_the_computed_values() {
     let robots = [
         (include_str!("../../../../robots/dualv.toml"), 150),
         (include_str!("../../../../robots/five_bar.toml"), 40),
@@ -136,15 +136,15 @@ fn names_are_true() {
                         Some(positive) => (positive, -value),
                         None => (name.as_str(), value),
                     };
-                    let Some(meant) = meanings.get(name) else {
+                    let Some(expected) = meanings.get(name) else {
                         continue;
                     };
                     checked += 1;
                     // The joints of a state close the legs to about eight digits.
-                    let error = (value - meant).abs();
+                    let error = (value - expected).abs();
                     assert!(
-                        error <= 1e-6 * (1.0 + meant.abs()),
-                        "{}: {name} is {value}, not {meant}",
+                        error <= 1e-6 * (1.0 + expected.abs()),
+                        "{}: {name} is {value}, not {expected}",
                         function.name
                     );
                 }

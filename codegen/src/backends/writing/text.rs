@@ -44,7 +44,7 @@ mod tests {
     use super::{documentation, plain};
 
     #[test]
-    fn lines_become_one() {
+    fn line_breaks_become_single_spaces() {
         for text in [
             "a\nb",
             "a\r\nb",
@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_seen_is_left_out() {
+    fn invisible_characters_are_removed() {
         for hidden in [
             '\u{202e}',
             '\u{2066}',
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn marks_of_documentation_stand_for_themselves() {
+    fn markdown_syntax_is_escaped() {
         assert_eq!(documentation("```\nno code\n```"), r"\`\`\` no code \`\`\`");
         assert_eq!(documentation("~~~"), r"\~\~\~");
         assert_eq!(documentation("see [Vec]"), r"see \[Vec\]");

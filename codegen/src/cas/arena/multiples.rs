@@ -102,7 +102,7 @@ mod tests {
 
     /// c (√3/2 c q) + s (√3/2 s q) is √3/2 q once multiples of constants are looked for.
     #[test]
-    fn a_determinant_of_a_leg_at_an_angle_is_a_multiple_of_its_length() {
+    fn a_determinant_of_a_rotated_leg_is_a_multiple_of_its_length() {
         let sixty = Direction::constant(Angle::half_turns(Ratio::new(1, 3).unwrap_or(Ratio::ONE)));
         let by_length = |finds: bool| {
             let arena = Arena::new();

@@ -71,7 +71,7 @@ mod tests {
 
     /// With t₁' = t₁ c + t₂ s and t₂' = t₂ c - t₁ s, k (t₂' c/s + t₁') is k t₂ / s where t₂ is known.
     #[test]
-    fn a_turned_direction_over_the_sine_is_found() {
+    fn a_rotated_direction_over_the_sine_is_recognised() {
         let solved = |finds: bool| {
             let arena = Arena::new();
             if finds {
@@ -92,7 +92,7 @@ mod tests {
 
     /// A sum that matches no known expression over its divisors stays unchanged.
     #[test]
-    fn a_sum_of_other_quotients_stays() {
+    fn unrelated_quotient_sums_are_unchanged() {
         let arena = Arena::new();
         arena.find_over_divisors();
         let [a, b, c, d] = [0, 1, 2, 3].map(|i| arena.input("pose", i));

@@ -259,7 +259,7 @@ mod tests {
 
     /// The squares of a quaternion's entries sum to one, also if some entries are zero.
     #[test]
-    fn the_squares_of_a_unit_quaternion_are_one_together() {
+    fn the_squared_entries_of_a_unit_quaternion_sum_to_one() {
         for zero in [&[][..], &[6], &[3, 5]] {
             let arena = Arena::new();
             arena.unit_quaternion("pose", 3, zero);
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sign_is_neither_one_nor_minus_one_and_its_square_is_one() {
+    fn a_symbolic_sign_only_has_a_square_of_one() {
         let arena = Arena::new();
         arena.let_be_sign("of_leg", 0);
         let (sign, x) = (arena.input("of_leg", 0), arena.input("pose", 0));
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sum_of_constants_is_one_and_keeps_what_stands_for_them() {
+    fn constant_sums_are_folded_and_keep_placeholders() {
         let arena = Arena::new();
         let [half, third] = [2, 3].map(|d| Number::ratio(Ratio::new(1, d).expect("a ratio")));
         let one = Number::ONE;

@@ -243,7 +243,7 @@ mod tests {
     use crate::cas::{Arena, CosineSine};
 
     #[test]
-    fn all_orders_give_the_derivatives() {
+    fn every_elimination_order_gives_the_derivatives() {
         for order in Order::ALL {
             let arena = Arena::new();
             let (x, y, q) = (arena.variable("x"), arena.variable("y"), arena.angle("q"));

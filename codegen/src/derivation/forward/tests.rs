@@ -105,7 +105,7 @@ fn derived<'a>(
 }
 
 #[test]
-fn joints_by_rule_close_every_leg_and_keep_the_mode_of_home() {
+fn closed_form_joints_close_all_legs_in_the_home_mode() {
     for (name, mechanism) in library() {
         legs_close(&name, &mechanism);
     }
@@ -149,7 +149,7 @@ fn legs_close(name: &str, mechanism: &Mechanism) {
 /// A plane whose normal the first joint tilts across the leg's base: a rotation γ about z, then a
 /// right angle about x, which the base undoes.
 #[test]
-fn the_first_joint_of_a_planar_leg_may_tilt_its_plane_and_turn_it() {
+fn the_first_joint_may_tilt_and_rotate_the_plane_of_its_leg() {
     let first = "[[leg.arm.joint]]\ntype = \"revolute\"\nactuated = true\n";
     let tilted = format!("{first}gamma = \"25 deg\"\nalpha = \"90 deg\"\n");
     let given = include_str!("../../../../robots/planar_3rrr.toml");
@@ -166,7 +166,7 @@ fn the_first_joint_of_a_planar_leg_may_tilt_its_plane_and_turn_it() {
 
 /// Whether a robot's pose has a closed form; if so, it returns the poses of the given actuator
 /// positions.
-fn pose_comes_back(name: &str, mechanism: &Mechanism) -> bool {
+fn recovers_pose(name: &str, mechanism: &Mechanism) -> bool {
     let arena = Arena::new();
     let found = derived(
         &arena,
@@ -201,10 +201,10 @@ fn pose_comes_back(name: &str, mechanism: &Mechanism) -> bool {
 }
 
 #[test]
-fn poses_by_rule_are_those_that_the_actuators_came_from() {
+fn closed_form_forward_kinematics_recovers_the_pose() {
     let mut with_closed_form = Vec::new();
     for (name, mechanism) in library() {
-        if pose_comes_back(&name, &mechanism) {
+        if recovers_pose(&name, &mechanism) {
             with_closed_form.push(mechanism.name);
         }
     }
@@ -222,14 +222,11 @@ fn poses_by_rule_are_those_that_the_actuators_came_from() {
 }
 
 #[test]
-fn the_platforms_origin_need_not_lie_between_its_points() {
+fn forward_kinematics_accepts_an_off_centre_platform_origin() {
     let text = include_str!("../../../../robots/dualv.toml")
         .replace("at = [0, \"at\", 0]", "at = [\"30 mm\", \"at\", 0]")
         .replace("at = \"r_p\"", "at = \"r_p + 20 mm\"")
         .replace("at = \"-r_p\"", "at = \"20 mm - r_p\"")
         .replace("x = \"0 m\", y = \"0 m\"", "x = \"-30 mm\", y = \"-20 mm\"");
-    assert!(pose_comes_back(
-        "off centre",
-        &mechanism("off centre", text)
-    ));
+    assert!(recovers_pose("off centre", &mechanism("off centre", text)));
 }

@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn functions_of_redundancy_are_those_of_redundant_robots() {
+    fn redundancy_functions_are_offered_for_redundant_robots_only() {
         let dualv = include_str!("../../../../robots/dualv.toml");
         assert!(has(dualv, Condition::Redundancy));
         // As many actuators as coordinates: a closure, and no internal torques.

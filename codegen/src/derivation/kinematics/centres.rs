@@ -91,12 +91,12 @@ mod tests {
     }
 
     #[test]
-    fn shoulder_and_wrist_of_a_seven_axis_arm() {
+    fn shoulder_and_wrist_centres_of_a_seven_axis_arm_are_found() {
         assert_eq!(of("kuka_lwr"), [[0, 1, 2], [4, 5, 6]]);
     }
 
     #[test]
-    fn axes_that_are_parallel_or_apart_do_not_meet() {
+    fn parallel_and_skew_axes_have_no_common_centre() {
         assert_eq!(of("dualv"), Vec::<Vec<usize>>::new());
         assert_eq!(of("rx90"), [vec![3, 4, 5], vec![0, 1]]);
     }

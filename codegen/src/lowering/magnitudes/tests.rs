@@ -91,7 +91,7 @@ fn a_guard_bounds_a_divisor_from_below() {
 }
 
 #[test]
-fn entries_are_bounded_as_asked() {
+fn matrix_entries_are_bounded_as_requested() {
     let mut product = program(&[Operation::Mul(X, Y)], Vec::new());
     let bounds = Magnitudes::new(Float::F64).guard(&mut product, &|_, _| 10.0, 1e4);
     assert_eq!(bounds, [1e4_f64.log2()]);

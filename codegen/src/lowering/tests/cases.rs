@@ -94,7 +94,7 @@ fn run(case: &Case) -> String {
 }
 
 #[test]
-fn every_case_gives_what_is_expected() {
+fn optimiser_cases_give_the_expected_programs() {
     let mut files: Vec<PathBuf> = fs::read_dir(folder())
         .expect("the folder of cases")
         .map(|entry| entry.expect("a file").path())
@@ -115,8 +115,8 @@ fn every_case_gives_what_is_expected() {
             continue;
         }
         if std::env::var_os("OVERACT_BLESS").is_some() {
-            let anew = format!("{}given:\n{}expected:\n{found}", case.head, case.given);
-            fs::write(&file, anew).expect("a writable case");
+            let updated = format!("{}given:\n{}expected:\n{found}", case.head, case.given);
+            fs::write(&file, updated).expect("a writable case");
         } else {
             let expected = &case.expected;
             wrong.push(format!("{name}: expected\n{expected}found\n{found}"));

@@ -85,7 +85,7 @@ const DAMAGES: [(&str, Damage); 12] = [
 ];
 
 #[test]
-fn damaged_programs_are_refused() {
+fn damaged_programs_fail_verification() {
     for seed in 0..20 {
         let sound = program(seed);
         assert_eq!(sound.verify(), Ok(()));
@@ -99,7 +99,7 @@ fn damaged_programs_are_refused() {
 }
 
 #[test]
-fn damaged_graphs_are_refused() {
+fn damaged_graphs_fail_verification() {
     let mut damages = 0;
     for seed in 0..20 {
         let Built { dag: sound, .. } = build(&function(seed), Start::Arena);

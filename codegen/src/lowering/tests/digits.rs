@@ -8,7 +8,7 @@ use crate::lowering::dag::{Dag, Definition};
 use crate::lowering::passes::PASSES;
 
 #[test]
-fn forms_of_the_derivation_lose_no_digits() {
+fn derived_forms_have_no_digit_loss() {
     for seed in 0..20 {
         let mut built = build(&function(seed), Start::Arena);
         built.measure();
@@ -51,7 +51,7 @@ fn lossy() -> (Dag, usize) {
 }
 
 #[test]
-fn repair_gives_a_cancelling_sum_the_form_of_the_derivation_back() {
+fn repair_restores_the_derived_form_of_a_cancelling_sum() {
     let (mut dag, node) = lossy();
     let own = dag.own_form(node).expect("another form");
     repair(&mut dag, &SearchLimits::QUICK);
@@ -59,7 +59,7 @@ fn repair_gives_a_cancelling_sum_the_form_of_the_derivation_back() {
 }
 
 #[test]
-fn nothing_is_repaired_where_nothing_is_replaced() {
+fn nothing_is_repaired_without_a_search() {
     let (mut dag, node) = lossy();
     let before = dag.definition(node);
     repair(&mut dag, &SearchLimits::NONE);

@@ -5,7 +5,7 @@ use super::random::function;
 use crate::lowering::dag::Dominators;
 
 #[test]
-fn branches_are_what_goes_with_a_node() {
+fn cones_are_the_nodes_removed_with_a_node() {
     let mut shared = 0;
     for seed in 0..20 {
         let mut dag = build(&function(seed), Start::Arena).dag;

@@ -32,7 +32,7 @@ fn program(shape: [usize; 2], steps: &[Operation], entries: &[usize]) -> Program
 }
 
 /// Largest number of live values if results are written at once.
-fn waiting(program: &Program) -> usize {
+fn most_live_values(program: &Program) -> usize {
     let last = |at: usize| {
         let uses = program.steps.iter().enumerate().skip(at + 1);
         let mut uses =
@@ -49,7 +49,7 @@ fn waiting(program: &Program) -> usize {
 }
 
 #[test]
-fn what_shares_a_value_stands_side_by_side() {
+fn operations_that_share_a_value_are_adjacent() {
     let step = Operand::Step;
     // Two values with two results each, which the columns have in the opposite order.
     let steps = [
@@ -62,7 +62,10 @@ fn what_shares_a_value_stands_side_by_side() {
     ];
     let before = program([1, 4], &steps, &[1, 3, 4, 5]);
     let after = schedule_min_live(&before);
-    assert_eq!([waiting(&before), waiting(&after)], [2, 1]);
+    assert_eq!(
+        [most_live_values(&before), most_live_values(&after)],
+        [2, 1]
+    );
     assert_eq!(after.verify(), Ok(()));
     let order = [steps[0], steps[1], Operation::Mul(step(0), input(3))];
     let found: Vec<Operation> = after.steps[..3].iter().map(|s| s.operation).collect();
@@ -70,7 +73,7 @@ fn what_shares_a_value_stands_side_by_side() {
 }
 
 #[test]
-fn sine_and_cosine_stay_together() {
+fn sine_and_cosine_stay_adjacent() {
     let step = Operand::Step;
     let steps = [
         Operation::Add(input(0), input(1)),
@@ -88,7 +91,7 @@ fn sine_and_cosine_stay_together() {
 }
 
 #[test]
-fn what_conditions_are_on_comes_first() {
+fn guarded_values_are_computed_first() {
     let step = Operand::Step;
     let steps = [
         Operation::Mul(input(0), input(1)),
@@ -107,7 +110,7 @@ fn what_conditions_are_on_comes_first() {
 }
 
 #[test]
-fn numbers_that_are_known_and_values_in_two_places_stay_where_they_are() {
+fn constant_and_repeated_entries_keep_their_places() {
     let steps = [Operation::Mul(input(0), input(1))];
     let mut before = program([2, 2], &steps, &[0, 0, 0, 0]);
     before.entries[1] = Entry::positive(Operand::Constant(0.0));
@@ -116,7 +119,7 @@ fn numbers_that_are_known_and_values_in_two_places_stay_where_they_are() {
 }
 
 #[test]
-fn of_a_large_program_the_next_result_is_taken_as_it_stands() {
+fn large_programs_are_scheduled_without_comparing_results() {
     // The first two results share a value; the third needs no step and would come first.
     for (links, is_compared) in [(3, true), (32_000, false)] {
         let link = |at: usize| match at {

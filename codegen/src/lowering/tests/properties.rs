@@ -117,7 +117,7 @@ fn divisors(dag: &Dag) -> BTreeSet<crate::cas::field::Element> {
 }
 
 #[test]
-fn every_pass_keeps_outputs_and_divisors_and_costs_no_more() {
+fn passes_keep_outputs_and_divisors_and_never_add_cost() {
     for seed in 0..FUNCTIONS {
         let Built { mut dag, .. } = built(seed);
         let symbols = point(&dag, seed);
@@ -146,7 +146,7 @@ fn every_pass_keeps_outputs_and_divisors_and_costs_no_more() {
 
 /// Large functions are searched in pieces; with small limits, small ones are, too.
 #[test]
-fn pieces_save_operations_and_keep_outputs() {
+fn search_in_pieces_saves_operations_and_keeps_outputs() {
     let limits = SearchLimits {
         piece_nodes: 12,
         whole_nodes: 0,
@@ -178,7 +178,7 @@ fn pieces_save_operations_and_keep_outputs() {
 }
 
 #[test]
-fn programs_compute_what_the_expressions_say() {
+fn programs_compute_the_values_of_their_expressions() {
     for seed in 0..FUNCTIONS {
         let Built {
             mut dag,

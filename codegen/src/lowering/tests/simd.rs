@@ -32,7 +32,7 @@ fn program(operations: &[Operation], entries: &[Operand]) -> Program {
 }
 
 #[test]
-fn a_product_of_constants_is_a_constant() {
+fn leg_constants_are_folded() {
     let before = program(
         &[
             Operation::Mul(input(OF_LEG, 0), input(OF_LEG, 1)),
@@ -55,7 +55,7 @@ fn a_product_of_constants_is_a_constant() {
 }
 
 #[test]
-fn constants_that_nothing_needs_are_left_out() {
+fn unused_constants_are_removed() {
     let before = program(
         &[
             Operation::Neg(input(OF_LEG, 0)),

@@ -1,6 +1,6 @@
 //! Errors of chains that do not fit their skeleton.
 
-use super::{assert_said, said};
+use super::{assert_diagnosis, diagnosis};
 
 /// An arm of two joints in a plane and a linkage from the ground to its second body; `joints` are the linkage's.
 fn arm(joints: &str, at: &str) -> String {
@@ -39,9 +39,9 @@ const DRIVEN: &str = "[[leg.linkage.joint]]\ntype = \"revolute\"\nactuated = tru
 const TIP: &str = "[[leg.linkage.joint]]\ntype = \"fixed\"\nd = 0.4\n";
 
 #[test]
-fn a_chain_that_blocks_its_skeleton() {
+fn a_chain_with_too_few_joints_is_rejected() {
     let text = arm(&format!("{DRIVEN}{TIP}"), "[-0.1, 0, 0]").replace(", 2 = -1.5", "");
-    assert_said(
+    assert_diagnosis(
         &text,
         "16:1",
         &["chain `linkage` has too few joints to follow its second body's motion"],
@@ -50,12 +50,12 @@ fn a_chain_that_blocks_its_skeleton() {
 
 /// If an end shares one direction only, any two joints seem to rotate about one axis.
 #[test]
-fn a_chain_whose_end_shares_too_little() {
+fn a_chain_end_without_enough_shared_directions_is_rejected() {
     let text = arm(
         &format!("{DRIVEN}{TURN}{TIP}"),
         "[-0.1, 0, 0]\nalong = [\"x\"]",
     );
-    assert_said(
+    assert_diagnosis(
         &text,
         "19:1",
         &[
@@ -67,9 +67,9 @@ fn a_chain_whose_end_shares_too_little() {
 }
 
 #[test]
-fn a_chain_that_never_closes() {
+fn an_unreachable_chain_end_is_rejected() {
     let text = arm(&format!("{DRIVEN}{TURN}{TIP}"), "[3, 0, 0]");
-    assert_said(
+    assert_diagnosis(
         &text,
         "31:1",
         &["chain `linkage` never reaches its place on its second body"],
@@ -77,10 +77,10 @@ fn a_chain_that_never_closes() {
 }
 
 #[test]
-fn a_skeleton_with_too_few_motors() {
+fn a_skeleton_with_too_few_motors_is_rejected() {
     let text = arm(&format!("{DRIVEN}{TURN}{TIP}"), "[-0.1, 0, 0]");
     let text = text.replacen("actuated = true\n", "", 1);
-    assert_said(
+    assert_diagnosis(
         &text,
         "1:8",
         &["the skeleton has 2 degrees of freedom, but the robot has 1 actuator"],
@@ -88,7 +88,7 @@ fn a_skeleton_with_too_few_motors() {
 }
 
 #[test]
-fn an_arm_with_a_linkage_is_right() {
+fn an_arm_with_a_linkage_is_accepted() {
     let text = arm(&format!("{DRIVEN}{TURN}{TIP}"), "[-0.1, 0, 0]");
-    assert_eq!(said(&text), "a robot");
+    assert_eq!(diagnosis(&text), "a robot");
 }

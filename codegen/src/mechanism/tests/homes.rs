@@ -1,7 +1,7 @@
 //! Rough homes of a leg that are all acceptable. At some of them singular values are nearly equal,
 //! which is no defect.
 
-use super::{assert_said, changed, said};
+use super::{assert_diagnosis, changed, diagnosis};
 use crate::cas::Stream;
 
 const HEXAPOD: &str = include_str!("../../../../cli/templates/spatial-6ups.toml");
@@ -18,12 +18,12 @@ fn hexapod(home: [f64; 3]) -> String {
 }
 
 #[test]
-fn a_leg_with_nearly_equal_singular_values_follows_the_platform() {
-    assert_eq!(said(&hexapod([0.47, -0.24, 0.56])), "a robot");
+fn a_leg_with_nearly_equal_singular_values_is_accepted() {
+    assert_eq!(diagnosis(&hexapod([0.47, -0.24, 0.56])), "a robot");
 }
 
 #[test]
-fn rough_homes_near_the_wanted_one_are_accepted() {
+fn approximate_home_poses_are_accepted() {
     let mut stream = Stream::new(3);
     for _ in 0..200 {
         let home = [
@@ -31,12 +31,12 @@ fn rough_homes_near_the_wanted_one_are_accepted() {
             0.5 * stream.number(),
             0.55 + 0.1 * stream.number(),
         ];
-        assert_eq!(said(&hexapod(home)), "a robot", "{home:?}");
+        assert_eq!(diagnosis(&hexapod(home)), "a robot", "{home:?}");
     }
 }
 
 #[test]
-fn a_leg_that_is_exactly_stretched_at_home_is_refused() {
+fn a_leg_fully_stretched_at_home_is_rejected() {
     let five_bar = include_str!("../../../../robots/five_bar.toml");
     // The length of an arm is 0.45 m, and the motors are 0.2 m apart.
     let stretched = (0.45_f64.powi(2) - 0.1_f64.powi(2)).sqrt();
@@ -46,6 +46,6 @@ fn a_leg_that_is_exactly_stretched_at_home_is_refused() {
         "leg `right` is singular at the home configuration",
         "neither stretched nor folded",
     ];
-    assert_said(&home(stretched), "45:1", &expected);
-    assert_eq!(said(&home(stretched - 1e-6)), "a robot");
+    assert_diagnosis(&home(stretched), "45:1", &expected);
+    assert_eq!(diagnosis(&home(stretched - 1e-6)), "a robot");
 }

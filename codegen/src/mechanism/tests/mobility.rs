@@ -1,6 +1,6 @@
 //! Errors of robots whose legs allow other motions than those described.
 
-use super::{PLANAR, assert_said, changed, said};
+use super::{PLANAR, assert_diagnosis, changed, diagnosis};
 use crate::mechanism::Motion;
 use crate::mechanism::check::{plain, rough_home};
 use crate::mechanism::mobility::Mobility;
@@ -49,9 +49,9 @@ at = ["r * cos(psi)", "r * sin(psi)", 0]
 }
 
 #[test]
-fn more_actuators_are_no_way_out_where_the_legs_leave_fewer_motions() {
+fn parasitic_motion_is_explained_instead_of_missing_actuators() {
     let text = three_rps("spatial");
-    assert_said(
+    assert_diagnosis(
         &text,
         "5:10",
         &[
@@ -63,7 +63,7 @@ fn more_actuators_are_no_way_out_where_the_legs_leave_fewer_motions() {
             "leg `rps` has too few joints to follow the platform's motion",
         ],
     );
-    assert!(!said(&text).contains("mark more joints"));
+    assert!(!diagnosis(&text).contains("mark more joints"));
 }
 
 /// The three legs with given independent coordinates.
@@ -73,13 +73,16 @@ fn with_independent(coordinates: &str) -> String {
 }
 
 #[test]
-fn independent_coordinates_that_determine_the_others_make_a_robot() {
-    assert_eq!(said(&with_independent("\"z\", \"rx\", \"ry\"")), "a robot");
+fn sufficient_independent_coordinates_are_accepted() {
+    assert_eq!(
+        diagnosis(&with_independent("\"z\", \"rx\", \"ry\"")),
+        "a robot"
+    );
 }
 
 #[test]
-fn independent_coordinates_that_do_not_are_refused_with_better_ones() {
-    assert_said(
+fn insufficient_independent_coordinates_are_rejected_with_advice() {
+    assert_diagnosis(
         &with_independent("\"x\", \"rx\", \"ry\""),
         "5:10",
         &[
@@ -87,7 +90,7 @@ fn independent_coordinates_that_do_not_are_refused_with_better_ones() {
             "write independent = [\"z\", \"rx\", \"ry\"], whose condition number is 1.0",
         ],
     );
-    assert_said(
+    assert_diagnosis(
         &with_independent("\"z\", \"rx\""),
         "5:10",
         &[
@@ -95,9 +98,9 @@ fn independent_coordinates_that_do_not_are_refused_with_better_ones() {
             "write independent = [\"z\", \"rx\", \"ry\"]",
         ],
     );
-    let twice = said(&with_independent("\"z\", \"z\""));
+    let twice = diagnosis(&with_independent("\"z\", \"z\""));
     assert!(twice.contains("`z` occurs twice"), "{twice}");
-    let all = said(&with_independent(
+    let all = diagnosis(&with_independent(
         "\"x\", \"y\", \"z\", \"rx\", \"ry\", \"rz\"",
     ));
     assert!(
@@ -111,7 +114,7 @@ fn independent_coordinates_that_do_not_are_refused_with_better_ones() {
             "motion = \"planar\"\nindependent = [\"x\"]",
         )],
     );
-    let planar = self::said(&planar);
+    let planar = self::diagnosis(&planar);
     assert!(
         planar.contains("`independent` has no meaning for this motion"),
         "{planar}"
@@ -121,12 +124,12 @@ fn independent_coordinates_that_do_not_are_refused_with_better_ones() {
 /// A tilted pose without its parasitic displacement is not allowed by the legs. It is projected
 /// onto the closures before motions are counted. The legs' planes block the rotation about z.
 #[test]
-fn a_tilted_platform_is_closed_before_its_motions_are_counted() {
+fn a_tilted_home_pose_is_closed_before_motions_are_counted() {
     let tilted = three_rps("spatial").replace(
         "z = \"0.5 m\" }",
         "z = \"0.5 m\", rx = \"20 deg\", ry = \"5 deg\" }",
     );
-    assert_said(
+    assert_diagnosis(
         &tilted,
         "5:10",
         &[
@@ -135,13 +138,13 @@ fn a_tilted_platform_is_closed_before_its_motions_are_counted() {
             "has parasitic motion with them, along x and y, and about z: write independent = ",
         ],
     );
-    assert!(!said(&tilted).contains("mark more joints"));
+    assert!(!diagnosis(&tilted).contains("mark more joints"));
 }
 
 /// Three legs at equal angles block the rotation about z at every pose: the last component of the
 /// quaternion stays zero. At other angles it does not.
 #[test]
-fn coordinates_that_closures_keep_at_zero_are_found() {
+fn coordinates_held_at_zero_by_closures_are_found() {
     let still = |angles: &[i32]| {
         let motion = "spatial\"\nindependent = [\"z\", \"rx\", \"ry\"]\nsource = \"";
         let text = rps(motion, angles).replace("source = \"\"\n", "");
@@ -158,7 +161,7 @@ fn coordinates_that_closures_keep_at_zero_are_found() {
 /// The ball of each leg stays in the vertical plane of its slide, n · (p + R a) = 0. The three
 /// equations and their derivatives n · v + (R a × n) · ω = 0 do not depend on the legs' joints.
 #[test]
-fn a_pose_that_is_brought_back_and_its_motions_are_those_of_the_legs_planes() {
+fn projected_poses_and_motions_satisfy_the_planes_of_the_legs() {
     let tilted = three_rps("spatial").replace(
         "z = \"0.5 m\" }",
         "z = \"0.5 m\", rx = \"20 deg\", ry = \"5 deg\" }",
@@ -198,25 +201,25 @@ fn a_pose_that_is_brought_back_and_its_motions_are_those_of_the_legs_planes() {
 
 /// Three legs of three parallel axes each keep a free platform in a plane that does not change.
 #[test]
-fn a_platform_without_parasitic_motion_has_a_motion() {
+fn a_narrower_motion_is_proposed_without_parasitic_motion() {
     let free = [
         ("motion = \"planar\"", "motion = \"spatial\""),
         ("phi = \"0 deg\"", "rz = \"0 deg\""),
     ];
     let text = changed(PLANAR, &free);
-    let said = said(&text);
+    let diagnosis = diagnosis(&text);
     for words in [
         "only 3 of these 6 motions (along x and y, and about z)",
         "choose a `motion` that the legs allow",
     ] {
-        assert!(said.contains(words), "{words}\nin\n{said}");
+        assert!(diagnosis.contains(words), "{words}\nin\n{diagnosis}");
     }
-    assert!(!said.contains("parasitic motion"), "{said}");
+    assert!(!diagnosis.contains("parasitic motion"), "{diagnosis}");
 }
 
 #[test]
-fn a_motion_that_the_legs_do_not_enforce_is_refused() {
-    assert_said(
+fn a_motion_not_enforced_by_the_legs_is_rejected() {
+    assert_diagnosis(
         &three_rps("fixed axis"),
         "5:10",
         &[
@@ -228,11 +231,11 @@ fn a_motion_that_the_legs_do_not_enforce_is_refused() {
 
 /// Four actuators drive the three allowed motions: one internal torque, not three.
 #[test]
-fn redundant_actuators_do_not_hold_the_platform_instead_of_the_legs() {
+fn redundant_actuators_do_not_replace_leg_constraints() {
     let text = rps("fixed axis", &[0, 120, 240, 180]);
     let what =
         ["they allow 3 motions, along z, and about x and y, and the actuators drive all of them"];
-    assert_said(&text, "5:10", &what);
+    assert_diagnosis(&text, "5:10", &what);
     let description =
         overact_description::parse(&Source::new("rps.toml", text)).expect("a description");
     let errors = super::super::check(&description).expect_err("another robot");
@@ -241,10 +244,10 @@ fn redundant_actuators_do_not_hold_the_platform_instead_of_the_legs() {
 }
 
 #[test]
-fn rods_that_stand_for_parallelograms_are_no_defect() {
+fn rods_that_replace_parallelograms_are_accepted() {
     let rods = include_str!("../../../../robots/delta_4.toml");
     assert_eq!(
-        said(rods.split("\n[identification]").next().unwrap_or(rods)),
+        diagnosis(rods.split("\n[identification]").next().unwrap_or(rods)),
         "a robot"
     );
 }

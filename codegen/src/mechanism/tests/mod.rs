@@ -23,7 +23,7 @@ fn changed(text: &str, changes: &[(&str, &str)]) -> String {
 }
 
 /// The errors of a description; none of the legs' shapes may be reported twice.
-fn said(text: &str) -> String {
+fn diagnosis(text: &str) -> String {
     let source = Source::new("my.toml", text);
     let description = match parse(&source) {
         Ok(description) => description,
@@ -36,15 +36,15 @@ fn said(text: &str) -> String {
 }
 
 /// Asserts that the only kind of error is at `place` and contains all of `expected`.
-fn assert_said(text: &str, place: &str, expected: &[&str]) {
-    let said = said(text);
+fn assert_diagnosis(text: &str, place: &str, expected: &[&str]) {
+    let diagnosis = diagnosis(text);
     assert!(
-        said.contains(&format!("--> my.toml:{place}\n")),
-        "{place} in\n{said}"
+        diagnosis.contains(&format!("--> my.toml:{place}\n")),
+        "{place} in\n{diagnosis}"
     );
-    assert!(said.contains("= help: "), "no way out of\n{said}");
+    assert!(diagnosis.contains("= help: "), "no way out of\n{diagnosis}");
     for words in expected {
-        assert!(said.contains(words), "{words}\nin\n{said}");
+        assert!(diagnosis.contains(words), "{words}\nin\n{diagnosis}");
     }
 }
 
@@ -64,8 +64,8 @@ fn wrist(joint: &str, joints: usize) -> String {
 }
 
 #[test]
-fn rods_of_no_length() {
-    assert_said(
+fn coincident_joint_axes_are_rejected() {
+    assert_diagnosis(
         &changed(PLANAR, &[("l_2 = \"0.20 m\"", "l_2 = \"0 m\"")]),
         "39:5",
         &[
@@ -73,7 +73,7 @@ fn rods_of_no_length() {
             "has no length: give the second a `d`",
         ],
     );
-    assert_said(
+    assert_diagnosis(
         &changed(DELTA, &[("rod = \"0.56 m\"", "rod = \"0 m\"")]),
         "45:1",
         &[
@@ -81,7 +81,7 @@ fn rods_of_no_length() {
             "a rod of zero length?",
         ],
     );
-    assert_said(
+    assert_diagnosis(
         &changed(DELTA, &[("arm = \"0.24 m\"", "arm = \"0 m\"")]),
         "42:5",
         &["joints `arm` and `cross` of leg `arm` always turn about the same axis"],
@@ -90,7 +90,7 @@ fn rods_of_no_length() {
         "type = \"revolute\"\nalpha = \"90 deg\"",
         "type = \"prismatic\"",
     )];
-    assert_said(
+    assert_diagnosis(
         &changed(SLIDERS, &slider).replace("229.7 deg", "0.1 m"),
         "33:1",
         &[
@@ -101,10 +101,10 @@ fn rods_of_no_length() {
 }
 
 #[test]
-fn joints_too_many() {
+fn legs_with_too_many_joints_are_rejected() {
     let fourth =
         "type = \"revolute\"\nd = \"l_2\"\n\n[[leg.arm.joint]]\ntype = \"revolute\"\nd = \"0.1 m\"";
-    assert_said(
+    assert_diagnosis(
         &wrist(fourth, 4),
         "41:1",
         &[
@@ -114,7 +114,7 @@ fn joints_too_many() {
         ],
     );
     let branch = "type = \"revolute\"\nd = \"l_2\"\nantecedent = \"1\"";
-    assert_said(
+    assert_diagnosis(
         &wrist(branch, 3),
         "31:1",
         &[
@@ -126,7 +126,7 @@ fn joints_too_many() {
         ("type = \"rigid\"", "type = \"point\""),
         ("rotation = [0, 0, 0]", ""),
     ];
-    assert_said(
+    assert_diagnosis(
         &changed(PLANAR, &point),
         "39:5",
         &[
@@ -137,9 +137,9 @@ fn joints_too_many() {
 }
 
 #[test]
-fn joints_too_few() {
+fn legs_with_too_few_joints_are_rejected() {
     let wanted = "leg `arm` has too few joints to follow the platform's motion";
-    assert_said(
+    assert_diagnosis(
         &wrist("type = \"fixed\"\nd = \"l_2\"\nparameters = []", 2),
         "37:1",
         &[
@@ -149,7 +149,7 @@ fn joints_too_few() {
         ],
     );
     // A parallelogram keeps the platform's orientation.
-    assert_said(
+    assert_diagnosis(
         &wrist("type = \"revolute\"\nd = \"l_2\"\ntheta = \"-q1-q2\"", 2),
         "37:1",
         &[wanted, "2 of the 3"],
@@ -159,13 +159,13 @@ fn joints_too_few() {
         (", phi = \"0 deg\"", ""),
         ("d = \"l_1\"", "d = \"l_1\"\nactuated = true"),
     ];
-    assert_said(&changed(PLANAR, &spatial), "38:1", &[wanted, "3 of the 6"]);
+    assert_diagnosis(&changed(PLANAR, &spatial), "38:1", &[wanted, "3 of the 6"]);
     // As many joints as the platform has motions, but in other directions.
     let tilted = [
         ("motion = \"planar\"", "motion = \"translation\""),
         (", phi = \"0 deg\"", ""),
     ];
-    assert_said(
+    assert_diagnosis(
         &changed(PLANAR, &tilted),
         "47:1",
         &[
@@ -176,8 +176,8 @@ fn joints_too_few() {
 }
 
 #[test]
-fn legs_that_never_reach() {
-    assert_said(
+fn unreachable_platform_points_are_rejected() {
+    assert_diagnosis(
         &changed(PLANAR, &[("radius = \"0.35 m\"", "radius = \"0.80 m\"")]),
         "47:1",
         &[
@@ -185,7 +185,7 @@ fn legs_that_never_reach() {
             "at least 0.300 m away",
         ],
     );
-    assert_said(
+    assert_diagnosis(
         &changed(
             PLANAR,
             &[("d = \"l_2\"", "d = \"l_2\"\nalpha = \"10 deg\"")],
@@ -201,7 +201,7 @@ fn legs_that_never_reach() {
         "1 = \"129 deg\", 2 = \"103 deg\", 3 = \"-322 deg\"",
         "1 = \"0 deg\", 2 = \"0 deg\", 3 = \"-90 deg\"",
     )];
-    assert_said(
+    assert_diagnosis(
         &changed(PLANAR, &away),
         "47:1",
         &[
@@ -213,13 +213,13 @@ fn legs_that_never_reach() {
 }
 
 #[test]
-fn the_home_that_is_proposed_closes() {
+fn the_proposed_home_closes_the_robot() {
     let away = [(
         "1 = \"129 deg\", 2 = \"103 deg\", 3 = \"-322 deg\"",
         "1 = \"0 deg\", 2 = \"0 deg\", 3 = \"-90 deg\"",
     )];
     let text = changed(PLANAR, &away);
-    let message = said(&text);
+    let message = diagnosis(&text);
     let proposed = message
         .split("give home = ")
         .nth(1)
@@ -227,7 +227,7 @@ fn the_home_that_is_proposed_closes() {
     let given = "{ 1 = \"0 deg\", 2 = \"0 deg\", 3 = \"-90 deg\" }";
     let better = text.replace(given, proposed.expect("a proposal"));
     assert_ne!(better, text);
-    assert_eq!(said(&better), "a robot");
+    assert_eq!(diagnosis(&better), "a robot");
 }
 
 /// The planar robot whose last leg has no motor and a shape of its own.
@@ -244,9 +244,9 @@ fn one_passive_leg() -> String {
 }
 
 #[test]
-fn actuators_that_do_not_move_the_platform() {
+fn actuators_that_do_not_hold_the_platform_are_rejected() {
     let locked = "with all motors locked the platform can still";
-    assert_said(
+    assert_diagnosis(
         &changed(
             PLANAR,
             &[(
@@ -261,7 +261,7 @@ fn actuators_that_do_not_move_the_platform() {
             "actuated = true",
         ],
     );
-    assert_said(
+    assert_diagnosis(
         &one_passive_leg(),
         "18:10",
         &[
@@ -270,12 +270,12 @@ fn actuators_that_do_not_move_the_platform() {
         ],
     );
     // Two legs at the same place.
-    let twins = [(
+    let collinear = [(
         "base = \"12 deg\"\ntop = \"45 deg\"",
         "base = \"-12 deg\"\ntop = \"-45 deg\"",
     )];
-    assert_said(
-        &changed(HEXAPOD, &twins),
+    assert_diagnosis(
+        &changed(HEXAPOD, &collinear),
         "17:10",
         &[
             "the actuators never determine the platform's motion",
@@ -285,7 +285,7 @@ fn actuators_that_do_not_move_the_platform() {
         ],
     );
     // All legs at one point of the platform.
-    assert_said(
+    assert_diagnosis(
         &changed(HEXAPOD, &[("r_p = \"0.20 m\"", "r_p = \"0 m\"")]),
         "17:10",
         &[
@@ -305,7 +305,7 @@ fn actuators_that_do_not_move_the_platform() {
         ("-442 deg", "-390 deg"),
         ("-562 deg", "-510 deg"),
     ];
-    assert_said(
+    assert_diagnosis(
         &changed(PLANAR, &turned),
         "18:10",
         &[
@@ -317,12 +317,12 @@ fn actuators_that_do_not_move_the_platform() {
 }
 
 #[test]
-fn joints_that_follow_each_other() {
+fn cyclically_coupled_joints_are_rejected() {
     let cycle = [
         ("d = \"l_1\"", "d = \"l_1\"\ntheta = \"-q3\""),
         ("d = \"l_2\"", "d = \"l_2\"\ntheta = \"q2\""),
     ];
-    assert_said(
+    assert_diagnosis(
         &changed(PLANAR, &cycle),
         "34:9",
         &["the joints are coupled in a cycle", "has `q` instead"],
@@ -330,8 +330,8 @@ fn joints_that_follow_each_other() {
 }
 
 #[test]
-fn actuators_beside_the_redundancy_that_is_said() {
-    let said = |wanted: u8, twice: bool| {
+fn actuator_counts_that_contradict_the_redundancy_are_rejected() {
+    let with_redundancy = |wanted: u8, twice: bool| {
         let motion = format!("motion = \"planar\"\nredundancy = {wanted}");
         let second = if twice {
             "d = \"l_1\"\nactuated = true"
@@ -343,8 +343,8 @@ fn actuators_beside_the_redundancy_that_is_said() {
             &[("motion = \"planar\"", &motion), ("d = \"l_1\"", second)],
         )
     };
-    assert_said(
-        &said(0, true),
+    assert_diagnosis(
+        &with_redundancy(0, true),
         "19:14",
         &[
             "a redundancy of 0 means 3 actuators for 3 coordinates, but the robot has 6",
@@ -352,14 +352,14 @@ fn actuators_beside_the_redundancy_that_is_said() {
             "take `actuated = true` from a joint, or write redundancy = 3",
         ],
     );
-    assert_said(
-        &said(1, false),
+    assert_diagnosis(
+        &with_redundancy(1, false),
         "19:14",
         &[
             "a redundancy of 1 means 4 actuators for 3 coordinates, but the robot has 3",
             "mark more joints",
         ],
     );
-    assert_eq!(self::said(&said(3, true)), "a robot");
-    assert_eq!(self::said(&said(0, false)), "a robot");
+    assert_eq!(self::diagnosis(&with_redundancy(3, true)), "a robot");
+    assert_eq!(self::diagnosis(&with_redundancy(0, false)), "a robot");
 }

@@ -65,7 +65,7 @@ mod tests {
     use overact_description::diagnostic::Source;
 
     #[test]
-    fn every_number_and_angle_has_a_name_of_its_own() {
+    fn every_number_and_angle_has_a_unique_name() {
         for text in [
             include_str!("../../../../robots/dualv.toml"),
             include_str!("../../../../robots/hexapod.toml"),

@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_legs_may_lack_a_column_and_the_first_may_not() {
+    fn only_the_last_legs_may_lack_a_column() {
         let masses = [0, 1, 2].map(|leg| of(leg, Symbol::M));
         let offsets = [0, 1].map(|leg| of(leg, Symbol::Off));
         let all = [&masses[..], &offsets[..]].concat();

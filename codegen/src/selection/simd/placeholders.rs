@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_equal_or_opposite_in_all_legs_stays_so() {
+    fn placeholders_keep_equal_and_opposite_values() {
         let mut placeholders = Placeholders::new();
         let numbers = |all: [i64; 2]| all.map(Number::integer).to_vec();
         let mut of = |all| placeholders.number(numbers(all), "d of `1`");
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_keep_sums_and_differences_that_all_legs_have() {
+    fn placeholders_keep_sums_and_differences_of_angles() {
         let mut placeholders = Placeholders::new();
         let mut of = |all| {
             placeholders

@@ -75,7 +75,7 @@ mod tests {
     use super::FirstJoints;
 
     #[test]
-    fn gradients_are_the_differences_of_the_products() {
+    fn gradients_agree_with_differences_of_the_products() {
         let joints = FirstJoints {
             count: 3,
             is_revolute: [true, false, true],

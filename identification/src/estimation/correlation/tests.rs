@@ -106,7 +106,7 @@ fn estimated(a: f64, seed: u64) -> (Estimation, Vec<f64>) {
 }
 
 #[test]
-fn deviations_are_those_of_many_repetitions() {
+fn standard_deviations_agree_with_monte_carlo() {
     const RUNS: u64 = 200;
     for a in [0.0, 0.9] {
         let mut errors = [0.0; 3];
@@ -134,7 +134,7 @@ fn deviations_are_those_of_many_repetitions() {
 }
 
 #[test]
-fn a_residual_that_repeats_itself_does_not_average_out() {
+fn periodic_residuals_do_not_average_out() {
     // A missing harmonic with the trajectory's period: more periods add no information.
     let with_periods = |periods: usize| {
         let samples = 100 * periods;
@@ -183,7 +183,7 @@ fn a_residual_that_repeats_itself_does_not_average_out() {
 }
 
 #[test]
-fn autocorrelation_and_spectrum_are_those_of_the_process() {
+fn autocorrelation_and_spectrum_match_the_ar_process() {
     let system = system(0.9, 3);
     let found = line_residual(&system, 0, &[0, 1, 2], &TRUTH, 0.01);
     assert_eq!(found.autocorrelation[0], 1.0);

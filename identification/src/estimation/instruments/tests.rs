@@ -85,7 +85,7 @@ fn both(system: &System) -> (Estimation, Instrumental) {
 }
 
 #[test]
-fn instruments_and_total_least_squares_are_not_biased_by_errors_of_a_column() {
+fn instruments_and_total_least_squares_are_unbiased() {
     const DRAWS: u64 = 60;
     let (mut least, mut instrumental, mut total) = (0.0, 0.0, 0.0);
     let (mut covering, mut rejected) = (0, 0);
@@ -118,7 +118,7 @@ fn instruments_and_total_least_squares_are_not_biased_by_errors_of_a_column() {
 }
 
 #[test]
-fn the_test_rejects_what_agrees_as_often_as_it_says() {
+fn the_hausman_test_has_its_nominal_size() {
     const DRAWS: u64 = 400;
     let rejected = |errors: f64| -> f64 {
         let rejects = (0..DRAWS).filter(|seed| {
@@ -137,7 +137,7 @@ fn the_test_rejects_what_agrees_as_often_as_it_says() {
 }
 
 #[test]
-fn weak_instruments_are_called_so() {
+fn weak_instruments_are_reported() {
     let mut system = system(0.2, 3);
     let mut generator = Pcg64::seed_from_u64(5);
     let rows = &system.stretches[0].lines[0];

@@ -143,7 +143,7 @@ mod tests {
     use super::{Hotelling, fisher_tail, log_gamma, student_quantile, student_tail};
 
     #[test]
-    fn a_test_without_a_statistic_is_not_passed() {
+    fn undefined_statistics_have_probability_zero() {
         assert_eq!(fisher_tail(f64::NAN, 2.0, 10.0), 0.0);
         assert_eq!(fisher_tail(1.0, 2.0, f64::NAN), 0.0);
         assert_eq!(student_tail(f64::NAN, 10.0), 0.0);
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_known_covariance_is_the_limit_of_many_degrees_of_freedom() {
+    fn known_covariance_is_the_limit_of_many_degrees_of_freedom() {
         let known = Hotelling::new(20.0, 9.0, f64::INFINITY);
         let many = Hotelling::new(20.0, 9.0, 1e6);
         assert!((known.statistic - 20.0 / 9.0).abs() < 1e-12);
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn quantiles_are_those_of_the_tables() {
+    fn quantiles_match_published_tables() {
         for (probability, freedom, table) in [
             (0.05, 1.0, 12.706_204_736),
             (0.05, 10.0, 2.228_138_852),

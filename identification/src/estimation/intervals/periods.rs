@@ -135,13 +135,13 @@ mod tests {
     }
 
     #[test]
-    fn ratios_that_chance_makes_enlarge_nothing() {
+    fn random_variance_ratios_enlarge_no_interval() {
         let found = enlarged(&logarithms(&[0.6, 1.7, 1.1, 0.8, 1.3, 0.9]));
         assert!(found.iter().all(|own| own.ratio == 1.0), "{found:?}");
     }
 
     #[test]
-    fn ratios_are_drawn_to_their_mean_as_far_as_chance_parts_them() {
+    fn variance_ratios_are_shrunk_towards_their_mean() {
         let found = enlarged(&logarithms(&[2.5, 4.0, 3.0, 2.8, 3.6]));
         let first = found[0].ratio;
         assert!(first.ln() > LEAST_MEAN);

@@ -101,7 +101,7 @@ fn intervals(kind: DrawOptions, samples: usize, seed: u64) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn intervals_contain_the_truth_as_often_as_they_say() {
+fn intervals_have_their_nominal_coverage() {
     const DRAWS: u64 = 100;
     for (memory, growth, repeated) in [
         (0.0, 0.0, 0.0),
@@ -130,7 +130,7 @@ fn intervals_contain_the_truth_as_often_as_they_say() {
 }
 
 #[test]
-fn more_periods_tell_no_more_of_what_repeats_itself() {
+fn more_periods_do_not_narrow_intervals_of_periodic_residuals() {
     let kind = DrawOptions {
         memory: 0.0,
         growth: 0.0,
@@ -217,7 +217,7 @@ fn coverage_of_sessions(sessions: usize, scatter: f64, are_known: bool) -> (f64,
 }
 
 #[test]
-fn intervals_contain_changes_between_sessions() {
+fn session_intervals_cover_changes_between_sessions() {
     let (without, narrow) = coverage_of_sessions(6, 0.5, false);
     let (with, wide) = coverage_of_sessions(6, 0.5, true);
     println!("changes, not labelled: {without:.3}, labelled: {with:.3}");

@@ -12,7 +12,7 @@ fn intervals(values: &[f64], freedom: f64) -> Intervals {
 }
 
 #[test]
-fn what_is_far_from_zero_is_not_cancelled() {
+fn parameters_far_from_zero_are_not_cancelled() {
     let known = intervals(&[0.3, -1.1, 6.0], 60.0);
     assert_eq!(refuted(&known, &[0]), None);
     assert_eq!(refuted(&known, &[0, 1]), None);
@@ -20,7 +20,7 @@ fn what_is_far_from_zero_is_not_cancelled() {
 }
 
 #[test]
-fn many_small_parameters_together_are_more_than_chance() {
+fn many_small_parameters_are_jointly_significant() {
     // Each alone is within its interval.
     let known = intervals(&[1.9; 12], 200.0);
     assert_eq!(refuted(&known, &[0]), None);
@@ -37,7 +37,7 @@ fn few_degrees_of_freedom_cannot_test_many_parameters() {
 }
 
 #[test]
-fn held_out_errors_grow_where_all_folds_say_so() {
+fn held_out_errors_grow_only_if_all_folds_agree() {
     assert!(grows(&[1.0, 2.0, 1.5, 1.0], &[1.2, 2.2, 1.8, 1.3]));
     assert!(!grows(&[1.0, 2.0, 1.5, 1.0], &[1.2, 1.8, 1.6, 0.9]));
     // The spread of two folds has no meaning.

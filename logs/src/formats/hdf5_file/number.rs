@@ -115,7 +115,7 @@ mod tests {
     use super::Number;
 
     #[test]
-    fn numbers_of_any_size_and_order() {
+    fn numbers_of_all_sizes_and_byte_orders_are_read() {
         let whole = |size, signed, byte_order| Datatype::FixedPoint {
             size,
             signed,

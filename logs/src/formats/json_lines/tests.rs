@@ -26,7 +26,7 @@ fn rows(text: &str, names: &[&str]) -> Result<Vec<Vec<f64>>, String> {
 }
 
 #[test]
-fn nested_values_are_columns() {
+fn nested_values_become_columns() {
     let text = "{\"t\": 0, \"p\": {\"q\": [1, \"2.5\"], \"on\": true}}\r\n\n\
                 {\"p\": {\"on\": false, \"q\": [-3e2, 4, 5]}, \"more\": [[]], \"t\": 0.1}";
     let file = open(text).expect("open");
@@ -39,7 +39,7 @@ fn nested_values_are_columns() {
 }
 
 #[test]
-fn objects_may_be_in_a_list_or_spread_over_lines() {
+fn json_lists_and_multiline_objects_are_read() {
     let expected = Ok(vec![vec![1.0], vec![2.0]]);
     for text in [
         "{\"q\":1}\n{\"q\":2}",
@@ -53,7 +53,7 @@ fn objects_may_be_in_a_list_or_spread_over_lines() {
 }
 
 #[test]
-fn values_that_are_no_numbers_are_located() {
+fn non_numeric_values_are_located() {
     for (second, what) in [
         ("{}", "log.jsonl:2: `q` is missing"),
         ("{\"q\": null}", "log.jsonl:2: `q` is null, not a number"),
@@ -84,22 +84,23 @@ fn values_that_are_no_numbers_are_located() {
             "log.jsonl:2: this is not JSON: expected value, at character 1",
         ),
     ] {
-        let told = rows(&format!("{{\"q\": 1}}\n{second}\n"), &["q"]).expect_err(second);
-        assert!(told.starts_with(what), "{told}");
-        assert!(told.contains("help: "), "{told}");
+        let message = rows(&format!("{{\"q\": 1}}\n{second}\n"), &["q"]).expect_err(second);
+        assert!(message.starts_with(what), "{message}");
+        assert!(message.contains("help: "), "{message}");
     }
     // Other columns may have anything.
     let text = "{\"q\": 1, \"x\": NaN, \"n\": \"NaN\\\"\"}\n{\"q\": 2, \"x\": null}\n";
     assert_eq!(rows(text, &["q"]), Ok(vec![vec![1.0], vec![2.0]]));
-    let told = rows("{\"t\": 0, \"q\": 1}\n{\"event\": 3}\n", &["t", "q"]).expect_err("an event");
+    let message =
+        rows("{\"t\": 0, \"q\": 1}\n{\"event\": 3}\n", &["t", "q"]).expect_err("an event");
     assert!(
-        told.contains("log.jsonl:2: the object has none of the keys `t`, `q`"),
-        "{told}"
+        message.contains("log.jsonl:2: the object has none of the keys `t`, `q`"),
+        "{message}"
     );
 }
 
 #[test]
-fn broken_lists_are_refused() {
+fn malformed_lists_are_rejected() {
     for (text, what) in [
         (
             "[{\"q\":1},\n{\"q\":2}",
@@ -115,37 +116,37 @@ fn broken_lists_are_refused() {
             "log.jsonl:2: the file goes on after its list",
         ),
     ] {
-        let told = rows(text, &["q"]).expect_err(text);
-        assert!(told.starts_with(what), "{told}");
+        let message = rows(text, &["q"]).expect_err(text);
+        assert!(message.starts_with(what), "{message}");
     }
 }
 
 #[test]
-fn memory_is_bounded() {
+fn nesting_depth_and_object_size_are_bounded() {
     let deep = format!(
         "{{\"q\": 1, \"x\": {}1{}}}\n",
         "[".repeat(40),
         "]".repeat(40)
     );
-    let told = rows(&deep, &["q"]).expect_err("deep");
+    let message = rows(&deep, &["q"]).expect_err("deep");
     assert!(
-        told.contains("log.jsonl:1: objects and lists are nested more than 16 deep"),
-        "{told}"
+        message.contains("log.jsonl:1: objects and lists are nested more than 16 deep"),
+        "{message}"
     );
     let long = format!(
         "{{\"q\": 1}}\n{{\"q\": 2, \"x\": \"{}\"}}\n",
         "x".repeat(2 << 20)
     );
-    let told = rows(&long, &["q"]).expect_err("long");
+    let message = rows(&long, &["q"]).expect_err("long");
     assert!(
-        told.contains("log.jsonl:2: an object has more than 1024 kB"),
-        "{told}"
+        message.contains("log.jsonl:2: an object has more than 1024 kB"),
+        "{message}"
     );
     let wide = format!("{{\"x\": [{}1]}}", "1,".repeat(30_000));
-    let told = open(&wide).expect_err("wide").to_string();
+    let message = open(&wide).expect_err("wide").to_string();
     assert!(
-        told.contains("an object has more than 20000 values"),
-        "{told}"
+        message.contains("an object has more than 20000 values"),
+        "{message}"
     );
     // Deep values further down are skipped.
     let later = format!("{}{deep}", "{\"q\": 1}\n".repeat(100));

@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn messages_are_read_in_either_order_of_bytes() {
+    fn messages_are_read_in_both_byte_orders() {
         let bytes = message();
         let found = JointState::read(&bytes).expect("a message");
         assert_eq!(found.stamp, (7, 500));
@@ -171,9 +171,9 @@ mod tests {
         }
         let mut other = bytes;
         other[1] = 7;
-        let told = JointState::read(&other).expect_err("another representation");
+        let error_text = JointState::read(&other).expect_err("another representation");
         assert_eq!(
-            told,
+            error_text,
             "has the representation 0x00 0x07 instead of plain CDR"
         );
     }

@@ -113,7 +113,7 @@ mod tests {
     use super::Kind;
 
     #[test]
-    fn values_become_numbers_without_loss() {
+    fn integer_values_are_converted_without_loss() {
         assert_eq!(Kind::Number.long(-3, 7), -3.0);
         assert_eq!(Kind::Unsigned.long(-1, 0), 18_446_744_073_709_551_615.0);
         assert_eq!(Kind::Unsigned.short(-1, 0), 4_294_967_295.0);

@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn levels_of_a_page_are_not_packed() {
+    fn page_levels_are_not_compressed() {
         for (packing, packed) in both(12, b"0123456789") {
             let mut own = page([b"ab", &packed[..]].concat(), 2, true);
             assert!(packing.unpack(&mut own).is_ok());
@@ -171,14 +171,14 @@ mod tests {
             let mut plain = page(packed.clone(), 2, false);
             assert!(packing.unpack(&mut plain).is_ok());
             assert_eq!(plain.buffer().as_ref(), packed);
-            let told = packing.unpack(&mut page(vec![1], 2, true));
-            let told = told.expect_err("no levels").to_string();
-            assert!(told.ends_with("a page is truncated"), "{told}");
+            let message = packing.unpack(&mut page(vec![1], 2, true));
+            let message = message.expect_err("no levels").to_string();
+            assert!(message.ends_with("a page is truncated"), "{message}");
         }
     }
 
     #[test]
-    fn pages_are_unpacked_piece_by_piece() {
+    fn pages_of_several_frames_are_unpacked() {
         for (packing, packed) in both(20, b"0123456789") {
             let pieces = [&packed[..], &packed].concat();
             let unpacked = packing.unpacked(b"", &pieces).expect("unpacked");
@@ -188,17 +188,20 @@ mod tests {
     }
 
     #[test]
-    fn pages_that_cannot_be_right_are_refused() {
+    fn corrupt_pages_are_rejected() {
         for (packing, packed) in both(9, b"0123456789") {
-            let told = packing.unpacked(b"", &packed).expect_err("too large");
-            assert_eq!(told, "a page is larger than its column, or than 128 MB");
+            let message = packing.unpacked(b"", &packed).expect_err("too large");
+            assert_eq!(message, "a page is larger than its column, or than 128 MB");
         }
         for (packing, packed) in both(10, b"0123456789") {
             assert!(packing.unpacked(b"", &packed).is_ok());
             for length in 1..packed.len() {
-                let told = packing.unpacked(b"", &packed[..length]);
-                let told = told.expect_err("truncated");
-                assert!(told.starts_with("a page can't be unpacked: "), "{told}");
+                let message = packing.unpacked(b"", &packed[..length]);
+                let message = message.expect_err("truncated");
+                assert!(
+                    message.starts_with("a page can't be unpacked: "),
+                    "{message}"
+                );
             }
             // Bytes from the end to the checksum; in gzip, the length follows it.
             let behind = match packing.method {

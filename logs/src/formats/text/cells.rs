@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_are_found_behind_any_others() {
+    fn cells_are_found_after_any_other_cells() {
         let wanted = [(0, 1), (2, 0), (2, 2), (3, 3)];
         let expected = Some(vec![-2.5e-3, 1.0, -2.5e-3, 7.0]);
         assert_eq!(numbers("1,x y,-2.5e-3,7", b',', &wanted), expected);
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn more_cells_than_others_have_are_left_to_a_closer_look() {
+    fn lines_with_extra_cells_are_left_to_the_slow_parser() {
         let wanted = [(0, 0), (1, 1)];
         assert_eq!(numbers("1,2,a,b,5", b',', &wanted), Some(vec![1.0, 2.0]));
         assert_eq!(numbers("1,2,a,b,5,", b',', &wanted), None);
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_left_to_a_closer_look() {
+    fn non_numeric_cells_are_left_to_the_slow_parser() {
         let wanted = [(0, 0), (1, 1)];
         for line in [
             "1", "1,", "1,x", "1,2x", "1,2 3", "1,nan", "1,inf", "1,1e999", "1,2e", "1 2,3",
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn digits_are_those_of_the_library() {
+    fn parsed_numbers_equal_those_of_the_library() {
         let mut seed = 7_u64;
         for _ in 0..20_000 {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);

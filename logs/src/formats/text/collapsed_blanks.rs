@@ -67,7 +67,7 @@ mod tests {
     use std::io::Read;
 
     #[test]
-    fn runs_of_blanks_are_one_and_none_is_left_at_the_ends_of_a_line() {
+    fn blanks_are_collapsed_and_trimmed_from_lines() {
         let text = "  1.0 \t 2.0  \r\n\t3.0 4.0\n\n   \n5";
         for buffer in [1, 3, 64] {
             let mut squeezed = String::new();

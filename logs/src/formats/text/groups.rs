@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_with_cells_in_the_same_rows_are_a_group() {
+    fn columns_with_values_in_the_same_rows_form_a_group() {
         let rows = [
             ["0", "1", "2", ""],
             ["1", "", "", "3"],
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_cells_make_no_group() {
+    fn isolated_missing_cells_form_no_group() {
         let rows = [
             ["0", "1", "2", "3"],
             ["1", "", "2", "3"],

@@ -149,7 +149,7 @@ mod tests {
     use super::{prose, with_interval};
 
     #[test]
-    fn backticks_are_code_where_they_come_in_pairs() {
+    fn paired_backticks_become_code() {
         assert_eq!(
             prose("set `a<b` or `c`"),
             "set <code>a&lt;b</code> or <code>c</code>"
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_is_rounded_by_its_interval() {
+    fn values_are_rounded_to_the_precision_of_their_interval() {
         let both = |value, [low, high]: [f64; 2]| {
             let (value, interval) = with_interval(value, low, high);
             format!("{value} in {}", interval.unwrap_or_default())

@@ -200,7 +200,7 @@ mod tests {
     use super::{Cell, Table};
 
     #[test]
-    fn a_table_has_headers_and_escapes() {
+    fn tables_have_header_scopes_and_escaped_cells() {
         let table = Table {
             caption: String::from("a < b"),
             header: vec![vec![Cell::text("name"), Cell::text("values").over(2)]],
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cell_carries_the_heading_of_its_column_and_group() {
+    fn cells_are_labelled_with_their_column_and_group() {
         let table = Table {
             caption: String::from("two groups"),
             header: vec![

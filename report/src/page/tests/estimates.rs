@@ -12,7 +12,7 @@ use overact_identification::{
 };
 
 #[test]
-fn a_regrouped_parameter_has_its_sum_beside_it() {
+fn regrouped_parameters_are_shown_with_their_sum() {
     let mut identification = identification();
     let base = &mut identification.base_parameters[0];
     base.name = String::from("m_platformR");
@@ -28,7 +28,7 @@ fn a_regrouped_parameter_has_its_sum_beside_it() {
 }
 
 #[test]
-fn friction_correlation_and_range_have_plots() {
+fn friction_correlation_and_ranges_are_plotted() {
     let identification = identification();
     let html = full(&identification);
     let document = parsed(&html);
@@ -59,7 +59,7 @@ fn friction_correlation_and_range_have_plots() {
 }
 
 #[test]
-fn every_line_has_its_errors_in_one_unit() {
+fn errors_of_each_torque_row_are_in_one_unit() {
     let identification = identification();
     let text = summary(&identification, None, Extent::Whole);
     let row = |name: &str| {
@@ -97,7 +97,7 @@ fn every_line_has_its_errors_in_one_unit() {
 }
 
 #[test]
-fn a_reason_of_two_models_is_reported_once() {
+fn a_reason_shared_by_two_models_is_printed_once() {
     let mut identification = identification();
     let check = &mut identification.checks[0];
     (check.passed, check.grade) = (false, Grade::DoNotUse);
@@ -112,7 +112,7 @@ fn a_reason_of_two_models_is_reported_once() {
 }
 
 #[test]
-fn what_was_calibrated_is_told_with_its_intervals() {
+fn calibrated_parameters_are_shown_with_intervals() {
     let offset = CalibratedParameter {
         name: HOSTILE.to_owned(),
         unit: "rad",
@@ -174,7 +174,7 @@ fn what_was_calibrated_is_told_with_its_intervals() {
 }
 
 #[test]
-fn parameters_over_time_have_plots_and_words() {
+fn online_estimates_are_plotted_and_described() {
     let mut identification = identification();
     let html = full(&identification);
     let document = parsed(&html);

@@ -64,7 +64,7 @@ fn element<'a>(document: &'a Document<'a>, id: &str) -> roxmltree::Node<'a, 'a> 
 }
 
 #[test]
-fn the_page_is_well_formed_and_has_each_figure_with_its_plots() {
+fn the_page_is_well_formed_and_has_all_figures() {
     let html = full(&identification());
     let document = parsed(&html);
     for (id, plots) in [
@@ -110,7 +110,7 @@ fn the_page_is_well_formed_and_has_each_figure_with_its_plots() {
 }
 
 #[test]
-fn no_name_becomes_markup_and_nothing_is_loaded() {
+fn names_are_escaped_and_no_resources_are_loaded() {
     let html = full(&identification());
     let document = parsed(&html);
     for node in document.descendants() {
@@ -135,7 +135,7 @@ fn no_name_becomes_markup_and_nothing_is_loaded() {
 }
 
 #[test]
-fn no_name_reaches_the_terminal_but_as_text() {
+fn names_are_printed_without_control_characters() {
     let mut identification = identification();
     identification.robot += &"x".repeat(5000);
     let output = summary(&identification, Some("report.html"), Extent::Whole)
@@ -160,7 +160,7 @@ fn no_name_reaches_the_terminal_but_as_text() {
 }
 
 #[test]
-fn a_short_summary_has_fifty_lines_and_what_may_be_used() {
+fn short_summaries_list_usable_parameters_in_fifty_lines() {
     let mut identification = identification();
     identification.warnings.clear();
     identification.calibration = None;
@@ -211,7 +211,7 @@ fn a_short_summary_has_fifty_lines_and_what_may_be_used() {
 }
 
 #[test]
-fn what_there_is_not_is_not_spoken_of() {
+fn missing_parts_are_not_mentioned() {
     let mut identification = identification();
     let of = |identification: &Identification, units: &Units| {
         page(&Contents {
@@ -242,7 +242,7 @@ fn what_there_is_not_is_not_spoken_of() {
 }
 
 #[test]
-fn the_verdict_stands_first_and_names_what_to_trust() {
+fn the_verdict_is_first_and_lists_trusted_parameters() {
     let html = full(&identification());
     let document = parsed(&html);
     let sections: Vec<_> = document
@@ -278,7 +278,7 @@ fn the_verdict_stands_first_and_names_what_to_trust() {
 }
 
 #[test]
-fn every_check_stands_with_what_shows_it() {
+fn checks_are_shown_with_their_evidence() {
     let html = full(&identification());
     let document = parsed(&html);
     let is = |node: &roxmltree::Node<'_, '_>, name| node.tag_name().name() == name;
@@ -326,7 +326,7 @@ fn every_check_stands_with_what_shows_it() {
 }
 
 #[test]
-fn tables_hold_the_numbers() {
+fn tables_contain_the_estimates() {
     let html = full(&identification());
     let document = parsed(&html);
     let parameters = text(element(&document, "parameters"));
@@ -355,14 +355,14 @@ fn tables_hold_the_numbers() {
 }
 
 #[test]
-fn the_part_that_is_plotted_holds_the_worst_miss() {
+fn the_plotted_part_contains_the_largest_residual() {
     let part = super::elements::select::worst_part(&[series("x")]);
     assert_eq!(part.len(), 300);
     assert!(part.contains(&300), "{part:?}");
 }
 
 #[test]
-fn an_identification_without_anything_still_has_a_page() {
+fn an_empty_identification_still_has_a_page() {
     let empty = Identification {
         robot: String::from("robot"),
         runs: Vec::new(),
@@ -400,7 +400,7 @@ fn an_identification_without_anything_still_has_a_page() {
 }
 
 #[test]
-fn the_flat_table_has_every_number_once() -> Result<(), Box<dyn std::error::Error>> {
+fn the_csv_contains_every_number_once() -> Result<(), Box<dyn std::error::Error>> {
     let csv = numbers(&identification())?;
     let mut reader = csv::Reader::from_reader(csv.as_bytes());
     let rows: Vec<csv::StringRecord> = reader.records().collect::<Result<_, _>>()?;

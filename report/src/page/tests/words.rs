@@ -3,7 +3,7 @@
 use super::{element, full, identification, parsed, text};
 
 #[test]
-fn what_would_go_unseen_stands_before_what_no_data_can_show() {
+fn undetectable_faults_precede_untestable_assumptions() {
     let mut own = identification();
     let without = full(&own);
     own.unseen = vec![String::from(
@@ -24,15 +24,15 @@ fn what_would_go_unseen_stands_before_what_no_data_can_show() {
 }
 
 #[test]
-fn the_first_figures_keep_their_units_beside_them() {
+fn summary_figures_are_joined_to_their_units() {
     let html = full(&identification());
     let document = parsed(&html);
     let mut all = document.descendants();
     let facts = all.find(|node| node.attribute("class") == Some("facts"));
     let output = text(facts.expect("the result in a few numbers"));
-    for (unit, apart) in [("\u{a0}%", " %"), ("\u{a0}s, ", " s, ")] {
+    for (unit, separated) in [("\u{a0}%", " %"), ("\u{a0}s, ", " s, ")] {
         assert!(
-            output.contains(unit) && !output.contains(apart),
+            output.contains(unit) && !output.contains(separated),
             "{output:?}"
         );
     }

@@ -58,8 +58,8 @@ impl Defect {
             Self::ActuatorsDependent => sketch.actuate_dependently(&mut dice),
         }?;
         // A leg with more mobility than the platform requires may lose a joint.
-        let is_sound = self == Self::JointMissing && sketch.moves();
-        (!is_sound).then_some(sketch)
+        let is_valid = self == Self::JointMissing && sketch.moves();
+        (!is_valid).then_some(sketch)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::reference::parameters::SYMBOLS;
 use crate::reference::{JointKind, Motion, Spring};
 
 /// Offset of the seed for the random stream of friction.
-const OWN: u64 = 0x0f12_1c71;
+const SEED_OFFSET: u64 = 0x0f12_1c71;
 
 /// Groups and symbols of friction that is equal in both directions.
 const SYMMETRIC: [&str; 5] = ["all", "friction", "fv", "fs", "off"];
@@ -46,7 +46,7 @@ impl Sketch {
     /// Draws Stribeck friction, direction-dependent and quadratic friction and, without a platform,
     /// load-dependent friction.
     pub(super) fn draw_friction(&mut self) {
-        let mut dice = Dice::new(self.seed ^ OWN);
+        let mut dice = Dice::new(self.seed ^ SEED_OFFSET);
         let is_tree = self.motion == Motion::None;
         for shape in &mut self.shapes {
             shape.draw_friction(&mut dice, is_tree);

@@ -53,7 +53,7 @@ fn root(a: f64, b: f64, angle: f64) -> Option<f64> {
 }
 
 #[test]
-fn the_root_at_home_is_the_derivative_of_its_equation() {
+fn the_root_at_home_equals_the_derivative_of_its_equation() {
     // The cosine of 60° is 1/2, its sine √3/2.
     let w = root(2.0, 3.0, FRAC_PI_3).expect("a root");
     assert!((w - (1.5 - 3.0_f64.sqrt())).abs() < 1e-15, "{w}");
@@ -62,7 +62,7 @@ fn the_root_at_home_is_the_derivative_of_its_equation() {
 }
 
 #[test]
-fn an_equation_at_its_extreme_or_of_rounding_alone_has_no_root() {
+fn equations_at_an_extremum_or_of_rounding_size_have_no_root() {
     // (a, b) along the turn: w vanishes except for its perpendicular part, which is relative to (a,
     // b).
     let along = |length: f64, across: f64| {
@@ -81,7 +81,7 @@ fn an_equation_at_its_extreme_or_of_rounding_alone_has_no_root() {
 }
 
 #[test]
-fn an_equation_that_is_linear_in_a_slide_gives_it_without_a_root() {
+fn linear_slide_equations_are_solved_without_a_root() {
     let found = |a: f64, b: f64, e: f64| {
         with_task(0.0, |arena, task, _| {
             let number = |value: f64| arena.number(Number::float(value));

@@ -50,7 +50,7 @@ mod tests {
     use super::remains;
 
     #[test]
-    fn a_filter_has_the_same_size_in_half_of_the_band() {
+    fn filter_estimates_must_agree_in_half_of_the_band() {
         assert!(remains(2e-6, 1.8e-6));
         assert!(remains(-2e-6, -2.5e-6));
         assert!(!remains(2e-6, 0.1e-6));

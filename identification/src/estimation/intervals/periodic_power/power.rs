@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_are_averaged_on_the_circle_of_frequencies() {
+    fn neighbouring_frequencies_are_averaged_cyclically() {
         // The ends are their own conjugates, so the transform of real numbers is real there.
         let imaginary = |bin: f64| bin * (bin - (BINS - 1) as f64);
         let residuals = [
