@@ -465,3 +465,55 @@ fn the_json_of_an_import_lists_the_treatment_of_each_element() {
         assert!(document[list].is_array(), "{list}");
     }
 }
+
+/// A crank drives a rocker by a rod between two ball joints, and a coupler on two pins, one of
+/// which is off their plane.
+const RODS: &str = "<mujoco model='rods'><worldbody>\n\
+    <body name='crank'><inertial pos='0 0 .05' mass='1' diaginertia='.01 .02 .02'/><joint name='crank' axis='0 1 0'/>\n\
+    <body name='rod' pos='0 0 .1'><inertial pos='.1 0 0' mass='.2' diaginertia='.001 .002 .002'/><joint name='hip' type='ball'/></body>\n\
+    <body name='coupler' pos='0 0 .1'><inertial pos='.1 0 0' mass='.2' diaginertia='.001 .002 .002'/><joint name='pin' axis='0 1 0'/><site name='p' pos='.3 0 .1'/></body></body>\n\
+    <body name='rocker' pos='.1 .2 0'><inertial pos='0 0 .05' mass='1' diaginertia='.01 .02 .02'/><joint name='rocker' axis='1 0 0'/></body>\n\
+    <body name='second' pos='.3 0 0'><inertial pos='0 0 .05' mass='1' diaginertia='.01 .02 .02'/><joint name='second' axis='0 1 0'/><site name='s' pos='0 3e-4 .2'/></body>\n\
+    </worldbody><equality>\n\
+    <connect name='ball' body1='rod' body2='rocker' anchor='.2 .1 .1'/>\n\
+    <connect name='bar' site1='p' site2='s'/></equality>\n\
+    <actuator><motor joint='crank'/></actuator></mujoco>";
+
+#[test]
+fn changes_of_loops_and_spins_of_rods_are_in_the_json_and_on_stderr() {
+    let bench = Bench::new();
+    bench.write("rods.xml", RODS);
+    let document = bench.json(&["import", "rods.xml", "-o", "my.toml"]);
+    assert_eq!(document["spins"], serde_json::json!(["rod"]), "{document}");
+    let misfits = common::list(&document["misfits"]);
+    assert_eq!(misfits.len(), 1, "{misfits:?}");
+    let misfit = &misfits[0];
+    assert_eq!(
+        (&misfit["file"], &misfit["line"], &misfit["name"]),
+        (&"rods.xml".into(), &9.into(), &"bar".into())
+    );
+    assert!((common::number(&misfit["length"]) - 3e-4).abs() < 1e-9);
+    assert_eq!(common::number(&misfit["angle"]), 0.0);
+    let message = bench.run(&["import", "rods.xml", "-o", "my.toml"]).err;
+    assert!(
+        message.starts_with("note: rods.xml:9: `bar` is changed by "),
+        "{message}"
+    );
+}
+
+#[test]
+fn contents_without_effect_are_printed_on_request() {
+    let bench = Bench::new();
+    bench.write("arm.xml", INCOMPLETE);
+    let plain = bench.run(&["import", "arm.xml", "-o", "my.toml"]).err;
+    assert!(!plain.contains(": ignored: "), "{plain}");
+    let all = bench.run(&["import", "--ignored", "arm.xml", "-o", "my.toml"]);
+    assert_eq!(all.code, Some(0), "{}", all.err);
+    assert!(all.err.starts_with(&plain), "{}", all.err);
+    assert!(
+        all.err
+            .contains("note: arm.xml:1: option timestep: ignored: settings of the simulation\n"),
+        "{}",
+        all.err
+    );
+}

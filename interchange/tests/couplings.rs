@@ -213,3 +213,53 @@ fn nonlinear_equalities_are_rejected() {
         "{message}"
     );
 }
+
+/// A gripper with a four-bar for each finger, whose cranks are coupled.
+fn gripper(actuator: &str) -> String {
+    let mass = "<inertial pos='0.01 0 0.02' mass='0.1' diaginertia='1e-4 1e-4 1e-4'/>";
+    let finger = |name: &str, side: f64| {
+        let at = |x: f64| side * x;
+        format!(
+            "<body name='crank_{name}' pos='{} 0 0'>{mass}<joint name='driver_{name}' axis='0 {side} 0'/>\n\
+             <body name='coupler_{name}' pos='{} 0 .06'>{mass}<joint name='coupler_{name}' axis='0 1 0'/></body></body>\n\
+             <body name='rocker_{name}' pos='{} 0 .03'>{mass}<joint name='rocker_{name}' axis='0 1 0'/></body>\n",
+            at(0.03),
+            at(0.04),
+            at(0.01)
+        )
+    };
+    let closure = |name: &str, side: f64| {
+        format!(
+            "<connect body1='coupler_{name}' body2='rocker_{name}' anchor='{} 0 .04'/>",
+            side * -0.02
+        )
+    };
+    format!(
+        "<mujoco model='gripper'><compiler angle='radian'/><worldbody>{}{}</worldbody>\n\
+         <equality>{}{}<joint joint1='driver_l' joint2='driver_r'/></equality>\n\
+         <tendon><fixed name='split'><joint joint='driver_r' coef='0.5'/><joint joint='driver_l' coef='0.5'/></fixed></tendon>\n\
+         <actuator>{actuator}</actuator></mujoco>",
+        finger("r", 1.0),
+        finger("l", -1.0),
+        closure("r", 1.0),
+        closure("l", -1.0)
+    )
+}
+
+#[test]
+fn a_gripper_of_two_coupled_four_bars_has_one_coordinate() {
+    for (actuator, coordinate) in [
+        ("<motor joint='driver_r'/>", "driver_r"),
+        ("<motor joint='driver_l'/>", "driver_l"),
+        ("<motor tendon='split'/>", "driver_r"),
+    ] {
+        let text = imported("gripper.xml", &gripper(actuator)).expect("a gripper");
+        let source = overact_codegen::Source::new("gripper.toml", text.clone());
+        let checked = match overact_codegen::check(&source) {
+            Ok(checked) => checked.mechanism,
+            Err(errors) => panic!("{actuator}: {}\n{text}", errors.render_plain(&source)),
+        };
+        assert_eq!(checked.coordinates(), [coordinate], "{actuator}");
+        assert_eq!(checked.actuator_names().len(), 1, "{actuator}");
+    }
+}

@@ -35,7 +35,7 @@ fn refused(text: &str, parts: &[&str]) {
 
 #[test]
 fn joints_solvable_only_together_are_rejected_by_name() {
-    // Watt's six-bar with the coupler driven through a ternary link: three rods hold the link.
+    // Stephenson's six-bar on a link of its longest path: three rods hold the plate.
     let text = format!(
         r#"<mujoco model="triad"><worldbody>
 <body name="crank">{MASS}<joint name="crank" axis="0 1 0"/>

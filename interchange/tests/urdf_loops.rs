@@ -125,6 +125,39 @@ fn gazebo_joints_close_loops() {
 }
 
 #[test]
+fn drake_urdfdom_and_isaac_constraints_equal_loop_elements() {
+    let ends = |kind: &str| {
+        format!(
+            "<loop name='k' type='{kind}'><predecessor link='coupler'><origin xyz='0.5 0 0'/></predecessor>\
+             <successor link='rocker'><origin xyz='0.2 0 0'/></successor><axis xyz='0 1 0'/></loop>"
+        )
+    };
+    let robot = |more: &str| {
+        parallelogram(more).replace("<robot name='loop'", "<robot name='loop' xmlns:drake='d'")
+    };
+    let found = |more: &str, name: &str| plain(read(&robot(more), "", "a")).replace(name, "k");
+    let point = "<drake:ball_constraint>\
+        <drake:ball_constraint_body_A name='coupler'/><drake:ball_constraint_p_AP value='0.5 0 0'/>\
+        <drake:ball_constraint_body_B name='rocker'/><drake:ball_constraint_p_BQ value='0.2 0 0'/>\
+        </drake:ball_constraint>";
+    assert_eq!(found(point, "ball_constraint"), found(&ends("ball"), "k"));
+    for kind in ["ball", "revolute"] {
+        let constraint = format!(
+            "<constraint name='k' type='{kind}'><parent link='coupler'/><child link='rocker'/>\
+             <parent_origin xyz='0.5 0 0'/><child_origin xyz='0.2 0 0'/><axis xyz='0 1 0'/></constraint>"
+        );
+        assert_eq!(found(&constraint, "k"), found(&ends(kind), "k"));
+        let isaac = format!(
+            "<loop_joint name='k' type='{kind}'><link1 link='coupler' xyz='0.5 0 0'/>\
+             <link2 link='rocker' xyz='0.2 0 0'/><axis xyz='0 1 0'/></loop_joint>"
+        );
+        assert_eq!(found(&isaac, "k"), found(&ends(kind), "k"));
+    }
+    let nameless = point.replace("_body_B name='rocker'", "_body_B");
+    assert!(read(&robot(&nameless), "", "a").is_err());
+}
+
+#[test]
 fn yaml_closures_may_refer_to_fixed_joints() {
     let tip = |name: &str, of: &str, at: &str| {
         format!("<link name='{name}_link'/>")

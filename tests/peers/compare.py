@@ -51,28 +51,47 @@ def without_dry_friction(toml, folder):
     return {name: (0.0 if name.startswith("fs_") else value) for name, value in values.items()}
 
 
-def sample(overact, toml, folder, size, order=None, count=5):
-    """States of a description with all outputs of overact that the comparison needs.
-
-    The states are drawn for coordinates in the given order of names, by default the description's.
-    """
-    sheet = json.loads(run(overact, "inspect", toml, "--json", "--effort", "none"))
-    values = without_dry_friction(toml, folder)
-    parameters = folder / "parameters.toml"
-    lines = [f"{name} = {values.get(name, 0.0)!r}" for name in sheet["parameters"]]
-    parameters.write_text("[parameters]\n" + "\n".join(lines) + "\n")
-    r = sheet["dof"]
+def drawn_states(sheet, size, order=None, count=5):
+    """Random states up to a displacement from home, drawn for coordinates in the given order of names."""
     random = np.random.default_rng(1)
     home = np.array(sheet["home_pose"])
     own = [(order or sheet["pose"]).index(name) for name in sheet["pose"]]
     states = []
     for _ in range(count):
-        drawn = [random.uniform(-largest, largest, r)[own] for largest in (size, 1, 3)]
+        drawn = [random.uniform(-largest, largest, sheet["dof"])[own] for largest in (size, 1, 3)]
         state = {"pose": home + drawn[0], "twist": drawn[1], "acceleration": drawn[2]}
         states.append({key: list(value) for key, value in state.items()})
+    return states
+
+
+def inspected(overact, toml, folder):
+    """The description's figures, its parameters without dry friction, and a file of those that it needs."""
+    sheet = json.loads(run(overact, "inspect", toml, "--json", "--effort", "none"))
+    values = without_dry_friction(toml, folder)
+    parameters = folder / "parameters.toml"
+    lines = [f"{name} = {values.get(name, 0.0)!r}" for name in sheet["parameters"]]
+    parameters.write_text("[parameters]\n" + "\n".join(lines) + "\n")
+    return sheet, values, parameters
+
+
+def torques_at(overact, toml, parameters, states, has_loops):
+    if not has_loops:
+        states = [{**state, "joints": state["pose"]} for state in states]
+    return evaluate(overact, toml, "inverse_dynamics", states, "--parameters", parameters)
+
+
+def sample(overact, toml, figures, size):
+    """States of a description with all outputs of overact that the comparison needs."""
+    sheet, _, parameters = figures
+    r = sheet["dof"]
+    states = drawn_states(sheet, size)
+    count = len(states)
+    result = []
     has_loops = sheet["joints"] > r
     result = []
-    # Motions for unit rates of the coordinates, of all states in one run.
+    # The torques first: most states out of reach are found by them. Then the motions for unit rates of the
+    # coordinates, of all states in one run.
+    torques = torques_at(overact, toml, parameters, states, has_loops)
     still = {"acceleration": [0.0] * r}
     units = [{**still, "pose": state["pose"], "twist": list(row)} for state in states for row in np.eye(r)]
     motions = [np.eye(r)] * count
@@ -82,24 +101,17 @@ def sample(overact, toml, folder, size, order=None, count=5):
         motions = [np.array(rates[count + at * r : count + (at + 1) * r]).T for at in range(count)]
         accelerations = evaluate(overact, toml, "joint_accelerations", states)
     else:
-        for state in states:
-            state["joints"] = state["pose"]
         joints, rates, accelerations = ([s[key] for s in states] for key in ("pose", "twist", "acceleration"))
-    torques = evaluate(overact, toml, "inverse_dynamics", states, "--parameters", parameters)
     for at in range(count):
         result.append((np.array(joints[at]), np.array(rates[at]), np.array(accelerations[at]), motions[at], np.array(torques[at])))
-    return sheet, values, result
+    return result
 
 
 def compare_platform(overact, file, description, toml, folder):
     """Figures of a platform with parasitic motion, and deviations: 0 of positions, and of torques."""
     from parasitic import states
 
-    sheet = json.loads(run(overact, "inspect", toml, "--json", "--effort", "none"))
-    parameters = folder / "parameters.toml"
-    values = without_dry_friction(toml, folder)
-    lines = [f"{name} = {values.get(name, 0.0)!r}" for name in sheet["parameters"]]
-    parameters.write_text("[parameters]\n" + "\n".join(lines) + "\n")
+    sheet, _, parameters = inspected(overact, toml, folder)
     plate = re.search(r"^# `([^`]*)` is the platform", Path(toml).read_text(), re.M)[1]
     drawn = states(file, plate, description["platform"]["independent"], PLATFORM_SIZE)
     torques = np.array(evaluate(overact, toml, "inverse_dynamics", [state for state, _ in drawn], "--parameters", parameters))
@@ -107,22 +119,25 @@ def compare_platform(overact, file, description, toml, folder):
     return sheet, 0.0, np.abs(torques - expected).max() / np.abs(expected).max()
 
 
-def compare(overact, file, folder, options=(), with_size=False):
-    """Description's figures, largest deviations of positions and torques, and misfit of the import.
+def compare(overact, file, folder, options=()):
+    """Description's figures, largest deviations of positions and torques, and misfit of the import."""
+    return compare_with_torques(overact, file, folder, options)[:4]
 
-    With `with_size` also the largest displacement from home.
-    """
+
+def compare_with_torques(overact, file, folder, options=()):
+    """As `compare`, then the largest displacement from home and the motors' torques in all states."""
     toml = folder / "robot.toml"
     imported = json.loads(run(overact, "--json", "import", file, *options, "-o", toml))
     misfit = sum(max(own["length"], own["angle"]) for own in imported["misfits"])
     description = Description(toml)
     if "platform" in description.toml:
-        found = (*compare_platform(overact, file, description.toml, toml, folder), misfit)
-        return (*found, PLATFORM_SIZE) if with_size else found
+        return (*compare_platform(overact, file, description.toml, toml, folder), misfit, PLATFORM_SIZE, None)
+    figures = inspected(overact, toml, folder)
+    sheet, values, _ = figures
     # Robots with a small workspace, or a home near a singular pose, are compared nearer to home.
     for size in SIZES:
         try:
-            sheet, values, states = sample(overact, toml, folder, size)
+            states = sample(overact, toml, figures, size)
             break
         except RuntimeError as error:
             if not any(reason in str(error) for reason in NEARER) or size == SIZES[-1]:
@@ -152,8 +167,7 @@ def compare(overact, file, folder, options=(), with_size=False):
         scale = np.abs(np.array(reduced) @ free).max()
         assert scale > 0, "a robot without torques compares nothing"
         worst_torque = max(worst_torque, np.abs(difference).max() / scale)
-    found = (sheet, worst_position, worst_torque, misfit)
-    return (*found, size) if with_size else found
+    return sheet, worst_position, worst_torque, misfit, size, [torques for *_, torques in states]
 
 
 def main():

@@ -167,7 +167,7 @@ class Description:
         for key in constants:
             value = joint.get(key, "q" if key == variable else 0.0)
             if key == variable:
-                found = re.fullmatch(r"(?:(-?[\d.e+-]+) \* )?(q(?:_\w+)?)(?: ([+-]) (.*))?", value)
+                found = re.fullmatch(r"(?:(-?[\d.e+-]+)(?: [a-z/]+)? \* )?(q(?:_\w+)?)(?: ([+-]) (.*))?", value)
                 factor, name, sign, constant = found.groups()
                 moved = own[leg, joint["name"] if name == "q" else name[2:]]
                 position, rate, acceleration = (float(factor or 1) * m for m in moved)

@@ -42,8 +42,8 @@ class Engine:
             joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
             if joint >= 0:
                 data.qpos[model.jnt_qposadr[joint]] = value
-        loose = (mujoco.mjtJoint.mjJNT_BALL, mujoco.mjtJoint.mjJNT_FREE)
-        balls = [d for d in range(model.nv) if model.jnt_type[model.dof_jntid[d]] in loose]
+        loose = (int(mujoco.mjtJoint.mjJNT_BALL), int(mujoco.mjtJoint.mjJNT_FREE))
+        balls = [d for d in range(model.nv) if int(model.jnt_type[model.dof_jntid[d]]) in loose]
         for _ in range(20):
             mujoco.mj_forward(model, data)
             gap, rows = self.closure()

@@ -6,7 +6,7 @@ use crate::{
     output::{self, check, emit, print},
 };
 use overact_codegen::diagnostic::visible;
-use overact_interchange::{Account, ClosureMisfit, Entry, Imported, Options};
+use overact_interchange::{ClosureMisfit, Entry, Imported, Options};
 use overact_robot::import;
 use serde::Serialize;
 use std::{
@@ -26,6 +26,9 @@ pub(crate) struct Arguments {
     /// Name of the robot [default: that of the file]
     #[arg(long)]
     name: Option<String>,
+    /// Also print notes on contents without effect on the dynamics, on stderr
+    #[arg(long)]
+    ignored: bool,
     /// Choices that the file does not determine
     #[command(flatten)]
     choices: Choices,
@@ -119,7 +122,10 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let inputs: Vec<&Path> = imported.inputs.iter().map(PathBuf::as_path).collect();
     check(&inputs, &output)?;
     if !as_json {
-        print_notes(&imported.account);
+        print_notes("reported", &imported.account.reported);
+        if arguments.ignored {
+            print_notes("ignored", &imported.account.ignored);
+        }
         print_misfits(&imported.misfits);
         return emit(&imported.text, written);
     }
@@ -130,11 +136,11 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     print(&document)
 }
 
-/// Prints unused contents of the files that may change the model, on stderr.
-fn print_notes(account: &Account) {
-    for entry in account.reported.iter().filter(|_| !is_quiet()) {
+/// Prints unused contents of the files with their treatment, on stderr.
+fn print_notes(treatment: &str, entries: &[Entry]) {
+    for entry in entries.iter().filter(|_| !is_quiet()) {
         let (subject, reason) = (entry.subject(), entry.counted_reason());
-        let text = format!("{subject}: reported: {reason}");
+        let text = format!("{subject}: {treatment}: {reason}");
         let note = format!(
             "{}:{}: {}",
             visible(&entry.file),
