@@ -7,15 +7,12 @@ mod deny;
 mod files;
 mod freshness;
 mod generated;
-mod guard;
 mod hash;
-mod licence;
 mod links;
 mod manifest;
 mod measure;
 mod metadata;
 mod page;
-mod registry;
 mod release;
 mod robots;
 mod times;
@@ -64,7 +61,7 @@ fn main() -> ExitCode {
         ["page"] => page::build(),
         ["page", "test"] => page::test(),
         ["release"] => release::check(),
-        ["release", "--tag", tag] => guard::check(tag),
+        ["release", "--tag", tag] => release::guard::check(tag),
         ["tests"] => at_once::run(at_once::Binaries::All),
         ["tests", "of-tier"] => at_once::run(at_once::Binaries::OfTier),
         ["times"] => times::table(None),

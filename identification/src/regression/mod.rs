@@ -8,7 +8,6 @@
 //! - `pass`: the pass over a run for equations of other kinds;
 //! - `instruments`: equations at the motion of the instruments, in step with the run;
 //! - `sink`, `factor`: decimated equations as R factors, stretches and points of plots;
-//! - `update`: update of an R factor;
 //! - `phase_sums`: mean equations of a periodic motion at each phase;
 //! - `projection`: projections of the inputs;
 //! - `points`: motion data for plots;
@@ -39,6 +38,5 @@ pub(crate) mod system;
 pub(crate) mod torque_uncertainty;
 mod transpose;
 pub(crate) mod uncertainty_propagation;
-mod update;
 
 pub(crate) use chunk::Chunk;

@@ -1,10 +1,13 @@
 //! Checks and packages the crates for publication.
 
+pub(crate) mod guard;
+mod licence;
+mod registry;
+
 use crate::Failure;
 use crate::files::read;
-use crate::licence::is_permitted;
 use crate::metadata::{Package, cargo, packages};
-use crate::registry;
+use licence::is_permitted;
 
 /// Checks all packages; reports all problems.
 pub(crate) fn check() -> Result<(), Failure> {

@@ -4,13 +4,12 @@
 //! far, so memory is independent of the number of equations. Residuals, norms, subsets of columns
 //! and weights follow from R: ||Y - W χ|| = ||R_Y - R_W χ||.
 
+mod update;
+
 use nalgebra::{DMatrix, DVector};
 
-use super::{
-    elimination::residual,
-    transpose::transpose,
-    update::{update, update_by_triangle},
-};
+use self::update::{update, update_by_triangle};
+use super::{elimination::residual, transpose::transpose};
 
 /// A column is dependent on the data if its part outside the others is below this fraction.
 pub(crate) const DATA_RANK_TOLERANCE: f64 = 1e-10;
