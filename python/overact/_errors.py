@@ -13,19 +13,20 @@ class Problem:
 
     Attributes:
         message: The problem, in one sentence.
-        code: Code under which `overact explain` has cause and remedy, such as `OA302`.
         file: File name as given, or the name of a run.
         line: Line, counted from 1.
         column: Number of a character, counted from 1, or the name of a column of a table.
         help: Advice.
+        code: Code under which `overact explain` has cause and remedy, such as `OA302`; empty for
+            problems of the package itself.
     """
 
     message: str
-    code: str = ""
     file: str | None = None
     line: int | None = None
     column: int | str | None = None
     help: str | None = None
+    code: str = ""
 
 
 class OveractError(Exception):

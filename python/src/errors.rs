@@ -60,14 +60,14 @@ fn is_of_description(error: &Error) -> bool {
     }
 }
 
-/// Message, code, file, line, column and advice.
+/// Message, file, line, column, advice and code.
 type Parts = (
-    String,
     String,
     Option<String>,
     Option<usize>,
     Option<Place>,
     Option<String>,
+    String,
 );
 
 /// Position in a line: number of a character, or name of a column.
@@ -84,10 +84,10 @@ fn parts(problem: Problem) -> Parts {
     });
     (
         problem.message,
-        problem.code.to_string(),
         problem.file,
         problem.line,
         column,
         problem.help,
+        problem.code.to_string(),
     )
 }
