@@ -42,9 +42,14 @@ impl Adjustments {
         }
     }
 
+    /// Whether masses or moments have lower bounds.
+    pub(super) fn has_bounds(&self) -> bool {
+        self.least_mass > 0.0 || self.least_inertia > 0.0
+    }
+
     /// Whether bounds or balance change the inertias of single bodies.
     fn changes_single_inertias(&self) -> bool {
-        self.least_mass > 0.0 || self.least_inertia > 0.0 || self.is_balanced
+        self.has_bounds() || self.is_balanced
     }
 
     /// Whether the settings change inertias at all.

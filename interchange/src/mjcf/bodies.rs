@@ -7,10 +7,10 @@ use super::{
 use crate::{
     files::Files,
     geometry::exact,
-    model::{Body, Joint, JointType, Model, Pose},
+    model::{Body, Inertia, Joint, JointType, Model, Pose},
     xml::Element,
 };
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 use std::collections::BTreeSet;
 
 /// Reads all bodies; returns what depends on inertias.
@@ -95,7 +95,8 @@ fn body(
     let model = &mut *tree.model;
     let mut joints = Vec::new();
     gather_joints(reader, element, &Pose::identity(), class, &mut joints);
-    let mut placement = offset * reader.compiler.frame(files, element);
+    let frame = reader.compiler.frame(files, element);
+    let mut placement = offset * frame;
     let mut parent = parent;
     let count = joints.len();
     for (at, (own, offset)) in joints.iter().enumerate() {
@@ -155,7 +156,14 @@ fn body(
     let own = model.bodies.len() - 1;
     tree.compensation.body(files, element, own);
     let (inertia, is_unknown) = inertia::read(reader, element, class);
-    model.bodies[own].inertia = inertia;
+    // MuJoCo puts the least mass of a body without inertia at `pos` of the body, in its own frame.
+    let is_bounded = reader.compiler.adjustments.has_bounds() && !is_unknown;
+    let massless = Inertia {
+        mass: 0.0,
+        centre: frame.translation.vector.into(),
+        tensor: Matrix3::zeros(),
+    };
+    model.bodies[own].inertia = inertia.or_else(|| is_bounded.then_some(massless));
     model.bodies[own].has_unknown_inertia = is_unknown;
     inside(reader, element, own, &Pose::identity(), class, tree);
 }

@@ -216,6 +216,17 @@ fn inertia_bounds_and_balancing_match_mujoco() {
         "between the hinges of one body"
     );
     assert_spring(&model, 3.30623326, 0.64802172);
+    // A body without inertia has the least mass at `pos`, also in a frame.
+    let bounded = read(
+        "<mujoco><compiler boundmass='0.5' boundinertia='0.01'/><worldbody><body><joint/>\
+         <inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/><frame pos='0 0 1' euler='30 20 10'>\
+         <body pos='0.1 0.2 0.3' euler='0 0 40'/></frame></body></worldbody></mujoco>",
+    );
+    assert_inertia(
+        &bounded,
+        2,
+        [0.5, 0.1, 0.2, 0.3, 0.01, 0.01, 0.01, 0.0, 0.0, 0.0],
+    );
     let balanced = read(
         "<mujoco><compiler boundinertia='0.02' balanceinertia='true'/><worldbody><body><joint/>\
          <inertial pos='0.1 0 0' mass='1' diaginertia='0.001 0.001 0.05'/></body></worldbody></mujoco>",
