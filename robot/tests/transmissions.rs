@@ -29,7 +29,7 @@ const GENERATED: f64 = 1e-12;
 /// Largest error of a pose that is found from the positions of the motors, m or rad.
 const POSE: f64 = 1e-11;
 /// Step of differences, and their largest error, relative to the largest number.
-const STEP: f64 = 1e-4;
+const STEP: f64 = 3e-5;
 const DIFFERENCES: f64 = 1e-5;
 
 /// Descriptions of the tier, by name.
