@@ -6,7 +6,7 @@ use overact_interchange::{Format, Options};
 use overact_robot::{
     CompiledFile, Error, RelativeError, Robot, SerialModel, SerialSettings, import,
 };
-use overact_tier::{by_tier, is_full};
+use overact_tier::by_tier;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -44,15 +44,15 @@ impl<'a> Dynamics<'a> {
             })
             .collect();
         parameters.resize(parameters.len() + info.payload_parameters.len(), 0.0);
-        let place = |name: &String| {
+        // Joints without names in the description have other names in the import, in order.
+        let place = |(at, name): (usize, &String)| {
             let mut own = info.coordinates.iter();
-            own.position(|own| own == name)
-                .expect("the same coordinates")
+            own.position(|own| own == name).unwrap_or(at)
         };
         Self {
             robot,
             parameters,
-            order: coordinates.iter().map(place).collect(),
+            order: coordinates.iter().enumerate().map(place).collect(),
         }
     }
 
@@ -139,8 +139,7 @@ fn errors(model: &SerialModel, original: &Dynamics<'_>, serial: &Dynamics<'_>) -
 }
 
 /// Exports a robot, imports the file, and compares reported with recomputed errors.
-fn check(stem: &str, format: Format) -> Result<[Option<RelativeError>; 3], Error> {
-    let robot = robot(stem)?;
+fn check(stem: &str, robot: &Robot, format: Format) -> Result<[Option<RelativeError>; 3], Error> {
     let model = robot.serial(&SerialSettings::new(format))?;
     let extension = if format == Format::Urdf {
         "urdf"
@@ -156,7 +155,7 @@ fn check(stem: &str, format: Format) -> Result<[Option<RelativeError>; 3], Error
     let again = Robot::new(CompiledFile::new(source, &Robot::serial_request())?);
     assert!(again.model().model().is_tree(), "{stem}: a serial robot");
     let values = |robot: &Robot| robot.true_values().expect("values");
-    let original = Dynamics::new(&robot, &values(&robot), &model.coordinates);
+    let original = Dynamics::new(robot, &values(robot), &model.coordinates);
     let serial = Dynamics::new(&again, &values(&again), &model.coordinates);
     assert_eq!(model.states.len(), 1000);
     let found = errors(&model, &original, &serial);
@@ -193,34 +192,108 @@ fn the_reported_errors_are_those_of_the_file() -> Result<(), Error> {
             "tricept",
         ],
     ]) {
-        let mjcf = check(stem, Format::Mjcf)?;
-        let urdf = check(stem, Format::Urdf)?;
+        let robot = robot(stem)?;
+        let mjcf = check(stem, &robot, Format::Mjcf)?;
+        let urdf = check(stem, &robot, Format::Urdf)?;
         // The fit is of inertia matrix and gravity. Velocity torques of reflected rotors, whose
         // inertia depends on the pose, have no counterpart in a serial robot.
-        for error in mjcf[..2].iter().chain(&urdf[..2]).flatten() {
+        let [mjcf, urdf] = [mjcf, urdf].map(|errors| [errors[0], errors[1]]);
+        for error in mjcf.iter().chain(&urdf).flatten() {
             assert!(
-                error.rms < 0.3 && error.rms <= error.largest,
+                error.rms <= error.largest && error.rms < 0.5,
                 "{stem}: {error:?}"
             );
+        }
+        for error in mjcf.iter().flatten() {
+            assert!(error.rms < 0.15, "{stem}: {error:?}");
         }
     }
     Ok(())
 }
 
-/// A robot without loops is exported without error if its bodies are physically consistent.
+/// An arm on a wall, with a slide and a body fixed on another.
+const ARM: &str = r#"
+name = "Arm"
+gravity = ["9.81 m/s^2", 0, 0]
+
+[[leg.arm.joint]]
+name = "turn"
+type = "revolute"
+alpha = "30 deg"
+actuated = true
+
+[[leg.arm.joint]]
+name = "lift"
+type = "prismatic"
+gamma = "20 deg"
+alpha = "-90 deg"
+d = "0.1 m"
+r = "q + 0.2 m"
+actuated = true
+
+[[leg.arm.joint]]
+name = "box"
+type = "fixed"
+d = "0.1 m"
+alpha = "40 deg"
+
+[[leg.arm.joint]]
+name = "swing"
+type = "revolute"
+antecedent = "box"
+alpha = "90 deg"
+d = "0.2 m"
+theta = "q + 15 deg"
+actuated = true
+
+[[place]]
+name = "arm"
+shape = "arm"
+
+[experiment]
+[experiment.parameters]
+xx_turn = 0.03
+yy_turn = 0.04
+zz_turn = 0.05
+mx_turn = 0.1
+m_turn = 2.0
+ia_turn = 0.02
+xx_lift = 0.02
+yy_lift = 0.02
+zz_lift = 0.01
+m_lift = 1.0
+ia_lift = 3.0
+xx_box = 0.004
+yy_box = 0.005
+zz_box = 0.006
+mz_box = 0.02
+m_box = 0.5
+xx_swing = 0.002
+yy_swing = 0.02
+zz_swing = 0.02
+mx_swing = 0.09
+m_swing = 0.6
+
+[[experiment.run]]
+name = "run"
+fundamental = "0.5 Hz"
+terms = [
+    { coordinate = "turn", harmonic = 1, amplitude = "60 deg" },
+    { coordinate = "lift", harmonic = 2, amplitude = "0.1 m", phase = "30 deg" },
+    { coordinate = "swing", harmonic = 3, amplitude = "50 deg" },
+]
+"#;
+
 #[test]
-fn a_serial_robot_has_no_error() -> Result<(), Error> {
-    if !is_full() {
-        return Ok(());
-    }
-    for stem in ["stanford", "tx40"] {
-        let errors = check(stem, Format::Mjcf)?;
-        println!("{stem}: {errors:?}");
-        assert!(
-            errors.iter().flatten().all(|error| error.largest < 1e-2),
-            "{stem}"
-        );
-    }
+fn a_consistent_serial_robot_has_no_error() -> Result<(), Error> {
+    let source = Source::new("arm.toml", ARM);
+    let robot = Robot::new(CompiledFile::new(source, &Robot::serial_request())?);
+    let errors = check("arm", &robot, Format::Mjcf)?;
+    println!("{errors:?}");
+    assert!(errors.iter().flatten().all(|error| error.largest < 1e-7));
+    // URDF has no rotor inertia: that of the slide cannot be in the bodies without their weight.
+    let [inertia, ..] = check("arm", &robot, Format::Urdf)?;
+    assert!(inertia.is_some_and(|error| error.rms > 0.01));
     Ok(())
 }
 

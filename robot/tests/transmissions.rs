@@ -18,7 +18,7 @@ type Failure = Box<dyn std::error::Error>;
 /// Robots of the default tier: a skeleton, redundant motors, and a skeleton with a slide.
 const SOME: [&str; 3] = ["ankle", "dualv", "tricept"];
 /// States of each robot in the default tier and in the full one.
-const STATES: [usize; 2] = [5, 40];
+const STATES: [usize; 2] = [5, 20];
 /// Half ranges of random states, rad and in units of the robot's length.
 const RANGES: [f64; 2] = [0.15, 0.08];
 /// Largest error of power, torques, velocities and accelerations, relative to the largest number.
@@ -29,7 +29,7 @@ const GENERATED: f64 = 1e-12;
 /// Largest error of a pose that is found from the positions of the motors, m or rad.
 const POSE: f64 = 1e-11;
 /// Step of differences, and their largest error, relative to the largest number.
-const STEP: f64 = 1e-4;
+const STEP: f64 = 3e-5;
 const DIFFERENCES: f64 = 1e-5;
 
 /// Descriptions of the tier, by name.

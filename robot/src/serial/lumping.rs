@@ -15,8 +15,10 @@ use nalgebra::{DMatrix, DVector, Matrix4, SymmetricEigen, Vector3};
 const REGULARISATION: f64 = 1e-6;
 /// Smallest eigenvalue of a pseudo-inertia, relative to the robot's mass.
 const FLOOR: f64 = 1e-9;
-/// Smallest eigenvalue of the start of the search.
-const START_FLOOR: f64 = 1e-3;
+/// Smallest eigenvalues of the starts of the search.
+const START_FLOORS: [f64; 3] = [1e-3, 1e-2, 1e-1];
+/// Smallest rotor inertia of a start, relative to the inertia of its coordinate.
+const START_ROTOR: f64 = 1e-3;
 /// Residual at which the bodies' own parameters are kept.
 const EXACT: f64 = 1e-9;
 /// Largest number of steps, and decrease of the cost that ends the search.
@@ -115,7 +117,16 @@ impl Lumping<'_> {
         let found = if residual(&kept) < EXACT * (self.states.len() as f64).sqrt() {
             kept
         } else {
-            search(&factor, &right, &raised(START_FLOOR), of_bodies.len())
+            // A body at the boundary may hold the search, so it starts from several.
+            let starts = START_FLOORS.iter().flat_map(|floor| {
+                let start = raised(*floor);
+                let mut without_rotors = start.clone();
+                without_rotors[of_bodies.len()..].fill(0.0);
+                [start, without_rotors]
+            });
+            let found = starts.map(|start| search(&factor, &right, &start, of_bodies.len()));
+            let best = found.min_by(|a, b| residual(a).total_cmp(&residual(b)));
+            best.unwrap_or(kept)
         };
         found
             .iter()
@@ -249,7 +260,7 @@ const TRIANGLE: [(usize, usize); INERTIAL] = [
 /// L of the bodies, entry by entry, then roots of the rotor inertias.
 fn roots(start: &[f64], of_bodies: usize) -> DVector<f64> {
     let (bodies, rotors) = start.split_at(of_bodies);
-    let rotors = rotors.iter().map(|inertia| inertia.max(START_FLOOR).sqrt());
+    let rotors = rotors.iter().map(|inertia| inertia.max(START_ROTOR).sqrt());
     let bodies = bodies.chunks(INERTIAL).flat_map(|body| {
         let rest = pseudo_inertia(body) - Matrix4::identity() * (0.5 * FLOOR);
         let lower = rest.cholesky().map_or(Matrix4::identity(), |own| own.l());

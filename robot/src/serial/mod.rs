@@ -35,6 +35,9 @@ use states::{Plant, State};
 use std::collections::BTreeMap;
 use tree::{INERTIAL, Tree};
 
+/// Gravity that programs assume for URDF, m/s².
+const STANDARD_GRAVITY: f64 = 9.81;
+
 /// Reason why a robot has no serial model.
 #[derive(Debug)]
 struct Refusal {
@@ -268,6 +271,12 @@ fn notes(
     }
     if !info.payload_parameters.is_empty() {
         notes.push("the payload is left out".to_owned());
+    }
+    let gravity = Vector3::from(mechanism.gravity.map(|number| number.value())).norm();
+    if format == Format::Urdf && (gravity - STANDARD_GRAVITY).abs() > 1e-9 {
+        notes.push(format!(
+            "URDF has no gravity: set it to {gravity} m/s² along -z in the simulator"
+        ));
     }
     if format == Format::Urdf && has("ia") {
         notes.push(
