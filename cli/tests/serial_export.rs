@@ -3,11 +3,19 @@
 mod common;
 
 use common::{Bench, robot};
+use std::fs;
+
+/// A bench with a description of the library.
+fn bench_of(file: &str) -> Bench {
+    let bench = Bench::new();
+    let text = fs::read_to_string(robot(file)).expect("a description");
+    bench.write(file, &text);
+    bench
+}
 
 #[test]
 fn a_skeleton_is_exported_as_a_serial_robot() {
-    let bench = Bench::new();
-    bench.write("ankle.toml", &robot("ankle.toml"));
+    let bench = bench_of("ankle.toml");
     let arguments = [
         "export",
         "--serial",
@@ -64,8 +72,7 @@ fn a_skeleton_is_exported_as_a_serial_robot() {
 
 #[test]
 fn robots_and_arguments_without_a_serial_form_are_refused() {
-    let bench = Bench::new();
-    bench.write("five_bar.toml", &robot("five_bar.toml"));
+    let bench = bench_of("five_bar.toml");
     let error = bench.bad(&[
         "export",
         "--serial",
