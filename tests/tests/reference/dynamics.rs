@@ -166,7 +166,7 @@ fn parameter_names_follow_the_columns() {
         assert_eq!(names.len(), parameters::count(&robot), "{name}");
     }
     let names = parameters::names(&robots::dualv());
-    assert_eq!(names.len(), 272);
+    assert_eq!(names.len(), 284);
     assert_eq!(
         names[parameters::leg_start(&robots::dualv(), 2) + parameters::BODY + 5],
         "zz_2_leg3"
