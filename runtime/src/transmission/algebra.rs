@@ -170,8 +170,9 @@ pub(super) fn pseudo_inverse<T: Float, const N: usize, const R: usize>(
         own.iter_mut().for_each(|entry| *entry /= upper[i][i]);
     }
     let condition = norm * sum_of_squares(&columns).sqrt() / T::of(R as f64);
-    // The comparison fails for NaN too.
-    if !(condition < T::of(T::LIMITS.partition)) {
+    // False for NaN too.
+    let is_regular = condition < T::of(T::LIMITS.partition);
+    if !is_regular {
         return Err(singular(condition));
     }
     for (row, scale) in columns.iter_mut().zip(&scales) {
@@ -200,9 +201,11 @@ pub(super) fn has_positive_determinant<T: Float, const R: usize>(mut matrix: [[T
         }
         let (done, rest) = matrix.split_at_mut(k + 1);
         let Some(own) = done.last() else { break };
-        if own[k] < T::ZERO {
+        // Both are false for zero and NaN.
+        let (is_above, is_below) = (own[k] > T::ZERO, own[k] < T::ZERO);
+        if is_below {
             is_positive = !is_positive;
-        } else if !(own[k] > T::ZERO) {
+        } else if !is_above {
             return false;
         }
         for row in rest {
@@ -231,7 +234,9 @@ pub(super) fn solve_definite<T: Float, const N: usize>(
             own[column] = (own[column] - known) / above[column];
         }
         let pivot = own[k] - dot(&own[..k], &own[..k]);
-        if !(pivot > T::of(T::LIMITS.singular)) {
+        // False for NaN too.
+        let is_regular = pivot > T::of(T::LIMITS.singular);
+        if !is_regular {
             return None;
         }
         own[k] = pivot.sqrt();
