@@ -220,10 +220,10 @@ impl Lumping<'_> {
         let source = self
             .tree
             .columns(&state.pose, &still, &still, &self.gravity);
-        for line in 0..r {
+        for (line, scale) in d.iter().enumerate() {
             let is_felt = scales.gravity > f64::MIN_POSITIVE;
             let weight = if is_felt {
-                1.0 / (d[line] * scales.gravity)
+                1.0 / (scale * scales.gravity)
             } else {
                 0.0
             };
