@@ -233,7 +233,7 @@ fn check<T: Float + Numbers>(tolerance: f64) {
     let is_single = size_of::<T>() == 4;
     let mut script = Script::default();
     let mut random = Random(31);
-    for defect in (0..12).map(|at| if at < 6 { 0 } else { at - 6 }) {
+    for defect in (0_usize..12).map(|at| at.saturating_sub(6)) {
         script.transmission::<1, 1, T>(&mut random, defect);
         script.transmission::<2, 2, T>(&mut random, defect);
         script.transmission::<4, 3, T>(&mut random, defect);

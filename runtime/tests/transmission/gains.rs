@@ -1,10 +1,10 @@
 //! Torques, inertias and gains of the joints and motors.
 
 use super::random::Random;
-use overact::transmission::{Error, Transmission, curvature};
+use overact::transmission::{Curvature, Error, Transmission, curvature};
 
 /// Positions of two motors over two joints, their Jacobian and its derivative.
-fn ankle(q: [f64; 2]) -> ([f64; 2], [[f64; 2]; 2], [[[f64; 2]; 2]; 2]) {
+fn ankle(q: [f64; 2]) -> ([f64; 2], [[f64; 2]; 2], Curvature<2, 2>) {
     let [a, b] = q;
     let motor = |side: f64| {
         let (sine, cosine) = (a + side * 0.3 * b).sin_cos();
