@@ -10,6 +10,9 @@ use overact_tier::by_tier;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+/// Inertia matrix, torques of gravity and velocity torques.
+type Quantities = [Vec<f64>; 3];
+
 /// Difference of reported and recomputed errors, relative to the root mean square of the quantity.
 const TOLERANCE: f64 = 1e-9;
 
@@ -102,7 +105,7 @@ impl<'a> Dynamics<'a> {
 fn errors(model: &SerialModel, original: &Dynamics<'_>, serial: &Dynamics<'_>) -> [[f64; 2]; 3] {
     let r = model.home.len();
     let all = model.states.iter();
-    let all: Vec<([Vec<f64>; 3], [Vec<f64>; 3])> = all
+    let all: Vec<(Quantities, Quantities)> = all
         .map(|(pose, twist)| (original.at(pose, twist), serial.at(pose, twist)))
         .collect();
     let count = all.len() as f64;
