@@ -68,7 +68,7 @@ impl<'a> Dynamics<'a> {
         own
     }
 
-    fn at(&self, pose: &[f64], twist: &[f64]) -> [Vec<f64>; 3] {
+    fn at(&self, pose: &[f64], twist: &[f64]) -> Quantities {
         let r = pose.len();
         let (pose, twist) = (self.ordered(pose), self.ordered(twist));
         let call = |function, inputs: &[&[f64]], size: usize| {
@@ -127,7 +127,7 @@ fn errors(model: &SerialModel, original: &Dynamics<'_>, serial: &Dynamics<'_>) -
             .iter()
             .map(|(own, _)| norm(quantity, &own[quantity]).powi(2));
         let size = (squares.sum::<f64>() / count).sqrt();
-        let error = |(own, other): &([Vec<f64>; 3], [Vec<f64>; 3])| {
+        let error = |(own, other): &(Quantities, Quantities)| {
             let pairs = own[quantity].iter().zip(&other[quantity]);
             let difference: Vec<f64> = pairs.map(|(a, b)| a - b).collect();
             norm(quantity, &difference) / size

@@ -3,9 +3,11 @@
 use super::mechanism::{JointType, RandomMechanism};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
+/// Writes a mechanism as a file.
+type Writer = fn(&RandomMechanism) -> String;
+
 /// Suffixes of the formats with the functions that write them.
-pub(crate) const FORMATS: [(&str, fn(&RandomMechanism) -> String); 3] =
-    [("xml", mjcf), ("urdf", urdf), ("sdf", sdf)];
+pub(crate) const FORMATS: [(&str, Writer); 3] = [("xml", mjcf), ("urdf", urdf), ("sdf", sdf)];
 
 fn numbers(values: impl IntoIterator<Item = f64>) -> String {
     let each: Vec<String> = values.into_iter().map(|v| format!("{v:?}")).collect();
