@@ -7,6 +7,7 @@ use super::{
     position::Position,
     suspicion::{DataFault, Suspicion},
 };
+use crate::significant;
 
 /// Smallest change of a step at lost samples, by the usual largest step.
 const LOST_STEP: f64 = 0.5;
@@ -116,7 +117,7 @@ impl Steps<'_> {
                 };
                 format!(
                     "{jump} (sample {first}), and {count} {repeat} all numbers of the one before, like a bus without a new packet; `resample = \"{} Hz\"` in [data] leaves them out and interpolates",
-                    self.frequency
+                    significant(self.frequency, 6)
                 )
             }
         }

@@ -128,10 +128,17 @@ impl Lumping<'_> {
             let best = found.min_by(|a, b| residual(a).total_cmp(&residual(b)));
             best.unwrap_or(kept)
         };
-        found
-            .iter()
-            .zip(&units)
-            .map(|(value, unit)| value * unit)
+        // The search approaches a rotor without inertia, but never reaches it.
+        let is_none = |at: usize, value: f64| at >= of_bodies.len() && value < FLOOR;
+        let scaled = found.iter().zip(&units).enumerate();
+        scaled
+            .map(|(at, (value, unit))| {
+                if is_none(at, *value) {
+                    0.0
+                } else {
+                    value * unit
+                }
+            })
             .collect()
     }
 
