@@ -94,7 +94,9 @@ impl Pass<'_> {
     }
 }
 
-/// Lines of the platform projection in each projection; `jacobians` are those of [`Motion::inverse_jacobians`].
+/// Lines of the platform projection in each projection.
+///
+/// `jacobians` are those of [`Motion::inverse_jacobians`].
 pub(crate) fn in_projections(
     model: &dyn Model,
     projections: &[Projection],
