@@ -3,6 +3,7 @@
 //! Samples are complex numbers: square roots of negative values exist, so identities of square
 //! roots can be confirmed at any random point.
 
+use super::field::mix;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A complex number.
@@ -16,6 +17,11 @@ impl Sample {
     /// A real sample.
     pub(crate) const fn real(re: f64) -> Self {
         Self { re, im: 0.0 }
+    }
+
+    /// A real sample in (0.2, 1.2), where sums, products and angles are all well-behaved.
+    pub(crate) fn of_bits(bits: u64) -> Self {
+        Self::real(0.2 + (mix(bits) >> 11) as f64 / (1_u64 << 53) as f64)
     }
 
     /// The real part.

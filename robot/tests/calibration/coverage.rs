@@ -42,7 +42,7 @@ const DEVIATIONS: f64 = 3.2;
 
 /// Checks coverage and the root mean square error in standard deviations, for noise of a colour.
 fn cover(colour: Colour, largest: f64) {
-    let draws = drawn([2, 40, 40]);
+    let draws = drawn([2, 20, 40]);
     let deviation = (NOMINAL * (1.0 - NOMINAL) / draws as f64).sqrt();
     let least = by_tier([0.5, NOMINAL - DEVIATIONS * deviation]);
     let described = robot(&text("dualv.toml"));

@@ -151,15 +151,20 @@ impl Fingerprint {
     }
 
     /// The sign, hashed from the canonical one of ±a so that it is an odd function.
+    ///
+    /// The size of the sample is hashed, too: with ±1, the factors sign(a) ± 1 could vanish there,
+    /// and a sample of zero confirms nothing.
     pub(crate) fn sign(self) -> Self {
         let sign = |a: Element| {
             let ([key], negative) = canonical([a]);
             let value = free(2, &[key, Element::ZERO]);
             if negative { -value } else { value }
         };
+        let ([key], _) = canonical([self.image[0]]);
+        let size = Sample::of_bits(free(6, &[key]).parts().0);
         Self {
             image: self.image.map(sign),
-            sample: Sample::real(self.sample.re().signum()),
+            sample: size * Sample::real(self.sample.re().signum()),
         }
     }
 

@@ -50,16 +50,15 @@ pub(super) struct Symbol {
 impl Symbol {
     fn new(name: &str, kind: SymbolKind) -> Self {
         let seed = mix_name(name);
-        // Samples lie in (0.2, 1.2), where sums, products and angles are all well-behaved.
-        let sample = 0.2 + (mix(seed ^ 5) >> 11) as f64 / (1_u64 << 53) as f64;
+        let sample = Sample::of_bits(seed ^ 5);
         Self {
             name: name.to_owned(),
             fingerprint: Fingerprint {
                 image: std::array::from_fn(|k| Element::from_bits(mix(seed ^ (k as u64 + 101)))),
-                sample: Sample::real(sample),
+                sample,
             },
             circle: std::array::from_fn(|k| Element::circle_point(mix(seed ^ (k as u64 + 11)))),
-            sample,
+            sample: sample.re(),
             kind,
             as_any: None,
         }
@@ -290,6 +289,20 @@ mod tests {
         // Cosine and sine with a root of either sign.
         let cosine = sign * (arena.one() - x * x).sqrt();
         assert_eq!(cosine * cosine + x * x, arena.one());
+    }
+
+    /// In the field √(x²) is x for some symbols and -x for others; only the sample tells them apart.
+    #[test]
+    fn roots_of_squares_keep_their_sign_beside_signs_of_a_value() {
+        for k in 0..40 {
+            let arena = Arena::new();
+            let (x, y) = (arena.input("pose", k), arena.input("twist", k));
+            let root = (x * x).sqrt();
+            for factor in [y.sign() + arena.one(), y.sign() - arena.one()] {
+                assert_ne!(root * factor, -x * factor, "{k}");
+            }
+            assert_ne!(root.sign(), -x.sign(), "{k}");
+        }
     }
 
     #[test]

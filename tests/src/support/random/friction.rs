@@ -43,7 +43,7 @@ impl Load {
 }
 
 impl Sketch {
-    /// Draws Stribeck friction, direction-dependent friction and, without a platform,
+    /// Draws Stribeck friction, direction-dependent and quadratic friction and, without a platform,
     /// load-dependent friction.
     pub(super) fn draw_friction(&mut self) {
         let mut dice = Dice::new(self.seed ^ SEED_OFFSET);
@@ -75,6 +75,9 @@ impl Shape {
                     directed.clone()
                 };
                 member.parameters.extend(dice.some(&own));
+            }
+            if dice.chance(0.15) {
+                member.parameters.push("fq");
             }
             if is_tree && dice.chance(0.25) {
                 let load = Load {
