@@ -37,6 +37,7 @@
 //! - `pairs`, `correlations`: correlated residuals of actuators;
 //! - `pace`: residual and motion over time;
 //! - `pass`: inputs of a pass over a run; `motion_data`: data of the rows; `run`: the pass;
+//! - `live_columns`: columns of a line that are not always zero; `products`: their products;
 //! - `scores`: result of all passes;
 //! - `model_columns`: the model's columns in a test;
 //! - `scaled`: normal equations of columns with different units;
@@ -47,6 +48,7 @@
 mod columns;
 mod correlations;
 mod group;
+mod live_columns;
 mod misreading;
 mod model_columns;
 mod motion_data;
@@ -55,6 +57,7 @@ mod pairs;
 mod pass;
 mod potential;
 mod prediction;
+mod products;
 mod run;
 mod scaled;
 mod score_covariance;
