@@ -37,7 +37,7 @@
 //! - `pairs`, `correlations`: correlated residuals of actuators;
 //! - `pace`: residual and motion over time;
 //! - `pass`: inputs of a pass over a run; `motion_data`: data of the rows; `run`: the pass;
-//! - `live_columns`: columns of a line that are not always zero; `products`: their products;
+//! - `products`: products of the columns of a line, as far as they are not always zero;
 //! - `scores`: result of all passes;
 //! - `model_columns`: the model's columns in a test;
 //! - `scaled`: normal equations of columns with different units;
@@ -48,7 +48,6 @@
 mod columns;
 mod correlations;
 mod group;
-mod live_columns;
 mod misreading;
 mod model_columns;
 mod motion_data;

@@ -6,10 +6,10 @@ use overact::Function;
 
 use super::{
     columns::{ActuatorSignals, FaultHypothesis, Sample, rates},
-    live_columns::LiveColumns,
     misreading::Misreading,
     pass::Pass,
     prediction::{Prediction, dot, inputs_of},
+    products::live_columns::LiveColumns,
     shapes::ActuatorState,
 };
 use crate::{

@@ -2,7 +2,7 @@
 
 use overact::Model;
 
-use super::{live_columns::AllColumns, sections::Frame};
+use super::{products::live_columns::AllColumns, sections::Frame};
 use crate::{
     regression::{columns::ColumnSet, projection::ModelKind},
     settings::Settings,

@@ -3,9 +3,9 @@
 use overact::Function;
 
 use super::{
-    live_columns::LiveColumns,
     motion_data::MotionData,
     pass::Pass,
+    products::live_columns::LiveColumns,
     sections::{RunScores, Sink, Tempo},
 };
 use crate::{

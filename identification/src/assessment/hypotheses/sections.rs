@@ -6,10 +6,9 @@ use nalgebra::{DMatrix, DMatrixView, DVector};
 
 use super::{
     columns::{FaultHypothesis, Layout},
-    live_columns::LiveColumns,
     pairs::Pairs,
     potential::MOST,
-    products::{LineGroup, Products, WeightedRows},
+    products::{LineGroup, Products, WeightedRows, live_columns::LiveColumns},
     shapes::{ActuatorState, PositionRange, Shape},
 };
 use crate::{

@@ -6,47 +6,49 @@
 
 use overact::Model;
 
-use super::columns::{FaultHypothesis, Layout};
-use crate::regression::{columns::ColumnSet, states::random_states};
+use crate::{
+    assessment::hypotheses::columns::{FaultHypothesis, Layout},
+    regression::{columns::ColumnSet, states::random_states},
+};
 
 /// Number of random states at which a column that is not zero has to show.
 const STATES: usize = 64;
 
 /// All columns of the lines.
-pub(super) struct AllColumns<'a> {
+pub(crate) struct AllColumns<'a> {
     /// Columns of the model, and the base parameters among them.
-    pub(super) columns: &'a ColumnSet,
-    pub(super) base: &'a [usize],
+    pub(crate) columns: &'a ColumnSet,
+    pub(crate) base: &'a [usize],
     /// Indices of the dry friction columns among the base parameters.
-    pub(super) friction: &'a [usize],
-    pub(super) hypotheses: &'a [FaultHypothesis],
-    pub(super) layout: &'a Layout,
+    pub(crate) friction: &'a [usize],
+    pub(crate) hypotheses: &'a [FaultHypothesis],
+    pub(crate) layout: &'a Layout,
 }
 
 /// The columns of one line that are not always zero.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct LiveColumns {
+pub(crate) struct LiveColumns {
     /// Indices among the base parameters, and among the friction rates.
-    pub(super) base: Vec<usize>,
-    pub(super) friction: Vec<usize>,
+    pub(crate) base: Vec<usize>,
+    pub(crate) friction: Vec<usize>,
     /// Hypotheses with one column, with their indices among these.
-    pub(super) hypotheses: Vec<FaultHypothesis>,
-    pub(super) places: Vec<usize>,
+    pub(crate) hypotheses: Vec<FaultHypothesis>,
+    pub(crate) places: Vec<usize>,
     /// Indices among all columns, ascending.
-    pub(super) columns: Vec<usize>,
+    pub(crate) columns: Vec<usize>,
     /// Number of decimated columns, without Y.
-    pub(super) decimated: usize,
+    pub(crate) decimated: usize,
 }
 
 impl AllColumns<'_> {
     /// All columns for each of `lines` lines.
-    pub(super) fn in_all(&self, lines: usize) -> Vec<LiveColumns> {
+    pub(crate) fn in_all(&self, lines: usize) -> Vec<LiveColumns> {
         let base: Vec<usize> = (0..self.base.len()).collect();
         vec![self.live(base, |_| true); lines]
     }
 
     /// Those of the lines of a robot without loops; `None` if no random state has a value.
-    pub(super) fn of_actuators(&self, model: &dyn Model, seed: u64) -> Option<Vec<LiveColumns>> {
+    pub(crate) fn of_actuators(&self, model: &dyn Model, seed: u64) -> Option<Vec<LiveColumns>> {
         let states = random_states(model, STATES, seed).ok()?;
         let rows = self
             .columns
@@ -95,12 +97,12 @@ impl AllColumns<'_> {
 
 impl LiveColumns {
     /// Number of base parameters and friction rates; Y follows them.
-    pub(super) fn models(&self) -> usize {
+    pub(crate) fn models(&self) -> usize {
         self.base.len() + self.friction.len()
     }
 
     /// Index of each of the `all` columns among those of the line.
-    pub(super) fn indices(&self, all: usize) -> Vec<Option<usize>> {
+    pub(crate) fn indices(&self, all: usize) -> Vec<Option<usize>> {
         let mut indices = vec![None; all];
         for (place, column) in self.columns.iter().enumerate() {
             indices[*column] = Some(place);

@@ -1,9 +1,12 @@
 //! Products of columns and residual by section of a run's time.
 
+pub(super) mod live_columns;
+
 use nalgebra::{DMatrix, DMatrixViewMut, DVector};
 
-use super::{columns::Layout, live_columns::LiveColumns};
+use super::columns::Layout;
 use crate::estimation::correlation::square;
+use live_columns::LiveColumns;
 
 /// Products of columns and residual, one column per section or cosine.
 ///
