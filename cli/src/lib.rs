@@ -24,7 +24,8 @@
 //! - `note`: notes on unintended contents of a description;
 //! - [`report`]: an identification as a page, JSON or a flat table;
 //! - `signals`: removal of temporary files if a signal ends the process;
-//! - `states`: states of a robot from JSON or CSV.
+//! - `states`: states of a robot from JSON or CSV;
+//! - `stopwatch`: times of the stages of a command.
 
 mod commands;
 mod effort;
@@ -41,6 +42,7 @@ mod progress;
 pub mod report;
 mod signals;
 mod states;
+mod stopwatch;
 
 use clap::{Parser, error::ErrorKind};
 use overact_codegen::diagnostic::Code;

@@ -55,6 +55,7 @@ fn basic_checks_keep_estimates_and_skip_fault_hypotheses() {
     assert!(!values(&all).is_empty());
     assert_eq!(values(&all), values(&basic));
     assert_eq!(basic["settings"]["checks"], "basic");
+    assert!(basic["timings"].is_null());
     let kinds = |document: &Value| -> Vec<String> {
         let checks = document["checks"].as_array().expect("checks").iter();
         checks.map(|one| one["kind"].to_string()).collect()
@@ -67,6 +68,47 @@ fn basic_checks_keep_estimates_and_skip_fault_hypotheses() {
         sentence.is_some_and(|sentence| sentence.contains("Only the basic checks were run"))
     };
     assert!(warned(&basic) && !warned(&all));
+}
+
+#[test]
+fn times_of_stages_and_checks_are_reported_on_request() {
+    let bench = serial();
+    bench.good(&["simulate", "my.toml", "-o", "log.csv"]);
+    let identify = |more: &[&str]| {
+        let all = ["identify", "my.toml", "--data", "log_identification.csv"];
+        bench.json(&[&all[..], more].concat())
+    };
+    let names = |document: &Value, checks: bool| -> Vec<String> {
+        let all = document["timings"].as_array().expect("times").iter();
+        let own = all.filter(|one| one["is_check"] == checks);
+        own.map(|one| {
+            assert!(one["seconds"].as_f64().is_some_and(|time| time >= 0.0));
+            one["stage"].as_str().expect("a name").to_owned()
+        })
+        .collect()
+    };
+    let basic = identify(&["--timings", "--checks", "basic"]);
+    let all = identify(&["--timings"]);
+    let [few, many] = [&basic, &all].map(|document| names(document, false));
+    for stage in [
+        "description",
+        "logs",
+        "base parameters",
+        "estimates and intervals",
+    ] {
+        assert!(few.iter().any(|own| own == stage), "{stage}: {few:?}");
+    }
+    assert!(!few.iter().any(|own| own.contains("hypotheses")), "{few:?}");
+    assert!(
+        many.iter().any(|own| own == "fault hypotheses: tests"),
+        "{many:?}"
+    );
+    assert!(many.iter().any(|own| own == "position noise"), "{many:?}");
+    assert!(names(&all, true).iter().any(|own| own == "delays"));
+    let log = ["identify", "my.toml", "--data", "log_identification.csv"];
+    let text = bench.good(&[&log[..], &["--timings", "--checks", "basic"]].concat());
+    assert!(text.contains("Times of the stages"), "{text}");
+    assert!(text.contains("check: raw samples"), "{text}");
 }
 
 #[test]

@@ -123,7 +123,7 @@ pub use regression::{
 };
 pub use result::{
     CrossValidation, Estimate, Estimator, FunctionParameter, MotorParameter, ParameterEstimate,
-    Regrouping, RunSummary, Stage,
+    Regrouping, RunSummary, Stage, StageTime,
 };
 pub use series::{
     ConditionSeries, LineResidual, ResidualSeries, RunFigures, Series, VelocitySeries,

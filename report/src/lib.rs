@@ -46,5 +46,5 @@ pub use published::Published;
 pub use published_comparison::compare_with_published;
 pub use report_bundle::{About, document, document_with_figures, whole_page};
 pub use summary::{Extent, summary};
-pub use terminal::{base_parameters, coefficient, cross_validation, estimate, tables};
+pub use terminal::{base_parameters, coefficient, cross_validation, estimate, tables, timings};
 pub use units::Units;

@@ -10,6 +10,7 @@ use crate::{
     note, output,
     progress::Progress,
     report as files,
+    stopwatch::Stopwatch,
 };
 use clap::ValueEnum;
 use overact::Model;
@@ -34,7 +35,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     runs: runs::Arguments,
     /// Factor files (`overact factor`) instead of logs
-    #[arg(long, value_name = "PARQUET", num_args = 1.., conflicts_with_all = ["tracking", "calibrate", "gains", "gravity_direction", "gear_friction", "online", "parameters", "strict", "all", "tables", "reports", "published"])]
+    #[arg(long, value_name = "PARQUET", num_args = 1.., conflicts_with_all = ["tracking", "calibrate", "gains", "gravity_direction", "gear_friction", "online", "parameters", "strict", "all", "tables", "timings", "reports", "published"])]
     factors: Vec<PathBuf>,
     /// Skip unusable parts of factor files, and report them
     #[arg(long, requires = "factors")]
@@ -58,6 +59,9 @@ pub(crate) struct Arguments {
     /// Print all tables below the whole summary
     #[arg(long)]
     tables: bool,
+    /// Also report the time of each stage and of each check
+    #[arg(long)]
+    timings: bool,
     /// Write the text (with --json the document) to a file instead of stdout
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -178,12 +182,15 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         .chain(arguments.calibrated_robot.as_deref())
         .chain(arguments.parameters.as_deref());
     output::check(&inputs, &[reports.outputs(), outputs.collect()].concat())?;
+    let stopwatch = Stopwatch::default();
+    stopwatch.begin("description");
     let robot = input::robot(&arguments.file, as_json)?;
     let reports = reports.read()?;
     let kept = match &arguments.kept {
         Some(names) => Some(overact_robot::kept_actuators(robot.model().model(), names)?),
         None => None,
     };
+    stopwatch.begin("logs");
     let runs = arguments.runs.runs(&robot, as_json)?;
     let mut settings = arguments.runs.settings(&robot, &runs);
     settings.kept_actuators = kept.unwrap_or(settings.kept_actuators);
@@ -209,7 +216,12 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     } else {
         identifier
     };
-    let mut result = identified(identifier, scope, as_json)?;
+    stopwatch.begin("preparation");
+    let mut result = identified(identifier, scope, &stopwatch, as_json)?;
+    let timings = stopwatch.finish();
+    if arguments.timings {
+        result.timings = timings;
+    }
     let published = reports.published().filter(|_| arguments.runs.are_virtual());
     if arguments.tracking || published.is_some() {
         let bar = Progress::new("simulating", as_json);
@@ -235,6 +247,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
                 reports.published(),
             ));
         }
+        text.push_str(&overact_report::timings(&result));
         text
     };
     let mut written = reports.written(&robot, &robot.model().info(), &result)?;
@@ -319,10 +332,14 @@ fn refused(result: &Identification) -> Failure {
 fn identified(
     identifier: Identifier<'_>,
     calibrated: Option<CalibrationScope>,
+    stopwatch: &Stopwatch,
     as_json: bool,
 ) -> Result<Identification, Failure> {
     let bar = Progress::new("identifying", as_json);
-    let tell = |doing: Doing<'_>| runs::tell(&bar, doing);
+    let tell = |doing: Doing<'_>| {
+        stopwatch.hear(&doing);
+        runs::tell(&bar, doing);
+    };
     let identifier = match calibrated {
         Some(scope) => identifier.calibrate(scope),
         None => identifier,

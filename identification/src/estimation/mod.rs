@@ -3,6 +3,7 @@
 //! - `base`: base parameters in the symmetric order (42)-(43);
 //! - `estimate`: ordinary or weighted least squares with standard deviations (44)-(48);
 //! - `correlation`, `fourier`: standard deviations for residuals correlated over time and lines;
+//! - `nonzero`: columns that are not zero in a line;
 //! - `periodic_variance`: variance of residual sums in periodic motion;
 //! - `intervals`: 95 % intervals that allow for correlation and elimination;
 //! - `instruments`: instrumental variables and total least squares, which allow for errors of the
@@ -19,6 +20,7 @@ pub(crate) mod estimate;
 mod fourier;
 pub(crate) mod instruments;
 pub(crate) mod intervals;
+pub(crate) mod nonzero;
 pub(crate) mod periodic_variance;
 mod position_noise;
 pub(crate) mod recommended;

@@ -10,7 +10,7 @@
 //! where X_i is before the group and B_i' after it. F and R have the same weights in opposite
 //! order. Both follow from the sums u_k + u_(N-1-k) and differences u_k - u_(N-1-k), with the even
 //! and odd parts of the weights. All signals are processed in parallel, and no discarded sample is
-//! filtered.
+//! filtered. Signals that have been zero so far, as many columns of robots without loops, stay zero.
 
 use nalgebra::Complex;
 use pulp::{Arch, Simd, WithSimd};
@@ -178,6 +178,10 @@ impl Pass<'_> {
     #[inline(always)]
     fn columns<S: Simd, const N: usize>(&mut self, simd: S, column: usize) {
         let groups = self.groups;
+        if self.are_zero::<S, N>(simd, column) {
+            self.put_zeros::<S, N>(simd, column);
+            return;
+        }
         let even = self.folded::<S, N>(
             simd,
             column,
@@ -194,6 +198,37 @@ impl Pass<'_> {
         );
         for (place, (even, odd)) in even.iter().zip(&odd).enumerate() {
             self.put(simd, column + place * S::F64_LANES, even, odd);
+        }
+    }
+
+    /// Whether vectors of signals are zero in the group and before it.
+    #[inline(always)]
+    fn are_zero<S: Simd, const N: usize>(&self, simd: S, column: usize) -> bool {
+        // Other signals mostly differ from zero in the first row.
+        for row in 0..self.groups.length {
+            if !is_zero::<S, N>(simd, self.rows, row * self.width + column) {
+                return false;
+            }
+        }
+        for part in 0..PARTS {
+            if !is_zero::<S, N>(simd, self.before, part * self.width + column) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Stores the results for vectors of zeros.
+    #[inline(always)]
+    fn put_zeros<S: Simd, const N: usize>(&mut self, simd: S, column: usize) {
+        for first in (0..N).map(|place| column + place * S::F64_LANES) {
+            for part in 0..PARTS {
+                let place = part * self.width + first;
+                *vector_mut::<S>(self.partial, place) = simd.splat_f64s(0.0);
+                *vector_mut::<S>(self.after, place) = simd.splat_f64s(0.0);
+            }
+            let place = PARTS * self.width + first;
+            *vector_mut::<S>(self.partial, place) = simd.splat_f64s(0.0);
         }
     }
 
@@ -280,6 +315,17 @@ fn times<S: Simd>(simd: S, factor: Mode, x: S::f64s, y: S::f64s) -> [S::f64s; 2]
         simd.sub_f64s(simd.mul_f64s(a, x), simd.mul_f64s(b, y)),
         simd.add_f64s(simd.mul_f64s(a, y), simd.mul_f64s(b, x)),
     ]
+}
+
+/// Whether `N` vectors of successive numbers are zero.
+#[inline(always)]
+fn is_zero<S: Simd, const N: usize>(simd: S, values: &[f64], first: usize) -> bool {
+    let own = vectors::<S, N>(values, first);
+    let mut sum = simd.splat_f64s(0.0);
+    for place in 0..N {
+        sum = simd.add_f64s(sum, simd.abs_f64s(own[place]));
+    }
+    simd.reduce_sum_f64s(sum) == 0.0
 }
 
 /// `N` vectors of successive numbers.

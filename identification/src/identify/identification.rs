@@ -29,7 +29,7 @@ use crate::{
     regression::columns::ColumnSet,
     result::{
         CrossValidation, Estimate, Estimator, FunctionParameter, MotorParameter, Regrouping,
-        RunSummary,
+        RunSummary, StageTime,
     },
     settings::Settings,
     thresholds::Thresholds,
@@ -104,6 +104,9 @@ pub struct Identification {
     /// Table 4, if controlled runs were compared.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tracking: Vec<TrackingError>,
+    /// Time of each stage, if it was measured.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub timings: Vec<StageTime>,
     /// Base parameters of the first model over time, if a replay was requested.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub online: Vec<OnlineEstimate>,

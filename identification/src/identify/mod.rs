@@ -94,6 +94,7 @@ pub fn identify_after(
     progress: &dyn Fn(Progress<'_>),
 ) -> Result<Identification, Error> {
     let info = model.info();
+    let stage = |name: &'static str| progress(Progress::Stage { name });
     // Report unusable validation runs before the long computation.
     check_runs(model, dataset.validation, settings)?;
     let projections = Projection::usual(&info, &settings.kept_actuators);
@@ -120,6 +121,7 @@ pub fn identify_after(
     let outcomes = estimate_all(&prepared, settings, dataset.true_values, progress);
     let (errors_in_regressor, alternatives) = regressor_errors(&outcomes);
     let estimates = estimates(outcomes, &projections, &mut warnings)?;
+    stage("physical consistency");
     let (consistent, inconsistent) = consistent_all(&info, &prepared, &estimates, &settings.prior);
     warnings.extend(
         consistent
@@ -132,6 +134,7 @@ pub fn identify_after(
     let others = consistent
         .iter()
         .map(|(projection, own)| Predictor::of_consistent(*projection, own));
+    stage("cross-validation");
     let held_out = cross_validate(
         model,
         &prepared,
@@ -161,31 +164,43 @@ pub fn identify_after(
         periodic_motions: &prepared.periodic_motions,
         settings,
     });
+    if test.is_some() {
+        stage("fault hypotheses: columns");
+    }
     let scores = test.as_ref().map(|test| test.scores(1)).transpose()?;
+    if let Some(scores) = &scores {
+        stage("fault hypotheses: tests");
+        scores.test_all();
+    }
     let narrow = || test.as_ref().map(|test| test.scores(2)).transpose();
     let column_noise = if settings.checks.has_fault_hypotheses() {
+        stage("position noise");
         prepared.column_noise(model, dataset.runs, settings)?
     } else {
         Vec::new()
     };
     let ranges = prepared.ranges(model);
-    let checks = assessment::checks(&Context {
-        model,
-        dataset,
-        settings,
-        columns: &prepared.columns,
-        base: &prepared.base,
-        systems: &prepared.systems,
-        watched: &watched,
-        estimates: &estimates,
-        inconsistent: &inconsistent,
-        scores: scores.as_ref(),
-        narrow: &narrow,
-        cross_validation: &cross_validation,
-        errors_in_regressor: &errors_in_regressor,
-        column_noise: &column_noise,
-        ranges: &ranges,
-    })?;
+    let checks = assessment::checks(
+        &Context {
+            model,
+            dataset,
+            settings,
+            columns: &prepared.columns,
+            base: &prepared.base,
+            systems: &prepared.systems,
+            watched: &watched,
+            estimates: &estimates,
+            inconsistent: &inconsistent,
+            scores: scores.as_ref(),
+            narrow: &narrow,
+            cross_validation: &cross_validation,
+            errors_in_regressor: &errors_in_regressor,
+            column_noise: &column_noise,
+            ranges: &ranges,
+        },
+        &|name| progress(Progress::Check { name }),
+    )?;
+    stage("plots");
     let failed = checks.iter().filter(|check| !check.passed);
     warnings.extend(failed.map(Check::located));
     let figures = plots::figures(
@@ -196,6 +211,9 @@ pub fn identify_after(
         held_out.motions,
         settings,
     )?;
+    if settings.online.is_some() {
+        stage("online filter");
+    }
     let online = replay(model, dataset, &prepared, &estimates, settings)?;
     let models: Vec<ModelKind> = projections.iter().map(Projection::model).collect();
     let estimates: Vec<Estimate> = estimates.into_iter().map(|(_, one)| one).collect();
@@ -235,6 +253,7 @@ pub fn identify_after(
         motors: Vec::new(),
         functions_base: Vec::new(),
         tracking: Vec::new(),
+        timings: Vec::new(),
         online,
         settings: settings.clone(),
         figures,

@@ -22,6 +22,16 @@ pub enum Progress<'a> {
         /// Model.
         model: ModelKind,
     },
+    /// Another stage begins.
+    Stage {
+        /// Name of the stage.
+        name: &'static str,
+    },
+    /// A check begins.
+    Check {
+        /// What it examines.
+        name: &'static str,
+    },
     /// Comparing predictions with a validation run.
     Validation {
         /// Name of the run.

@@ -124,6 +124,10 @@ impl NullaryFnOnce for Conditions<'_> {
         let mut matrix = vec![[0.0; LANES]; if n == r { r * r } else { 0 }];
         let groups = self.jacobians.chunks(LANES * self.size);
         for (rows, found) in groups.zip(self.found.chunks_mut(LANES)) {
+            let mut own = rows.chunks_exact(self.size);
+            if own.all(|jacobian| self.choice.is_identity(jacobian)) {
+                continue;
+            }
             for (j, scale) in scales.iter().enumerate() {
                 for (i, actuator) in kept.iter().enumerate() {
                     let entry = |jacobian: &[f64]| jacobian[actuator * r + j] * scale;

@@ -26,6 +26,9 @@ pub(crate) fn least_torques<const N: usize>(
     r: usize,
     inputs: [&[f64]; N],
 ) -> [Vec<f64>; N] {
+    if are_identities(jacobians, n, r) {
+        return inputs.map(<[f64]>::to_vec);
+    }
     let mut torques = inputs.map(|inputs| vec![0.0; inputs.len() / r * n]);
     with_avx2(LeastTorques {
         jacobians,
@@ -94,6 +97,12 @@ impl<const N: usize> NullaryFnOnce for LeastTorques<'_, N> {
             }
         }
     }
+}
+
+/// Whether all n × r matrices are identities.
+pub(crate) fn are_identities(matrices: &[f64], n: usize, r: usize) -> bool {
+    let mut all = matrices.chunks_exact((n * r).max(1));
+    all.all(|matrix| is_identity(matrix, r))
 }
 
 /// Whether a matrix of `r` columns is the identity.

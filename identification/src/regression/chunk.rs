@@ -25,13 +25,18 @@ impl Chunk {
 
 /// Rows of Γ² = J_a^-T Γ¹ from rows of Γ¹, line by line, and the first singular sample.
 ///
-/// Rows from the singular sample on are invalid.
+/// Rows from the singular sample on are invalid. `None` if J_a is the identity at all samples, as in
+/// robots without loops: both are then equal.
 pub(crate) fn projected(
     platform: &[Vec<f64>],
     choice: &KeptActuators,
     jacobians: &[f64],
     size: usize,
-) -> (Vec<Vec<f64>>, Option<usize>) {
+) -> Option<(Vec<Vec<f64>>, Option<usize>)> {
+    let mut all = jacobians.chunks_exact(size);
+    if all.all(|jacobian| choice.is_identity(jacobian)) {
+        return None;
+    }
     let r = platform.len();
     let samples = jacobians.len() / size;
     let width = platform
@@ -57,7 +62,7 @@ pub(crate) fn projected(
             }
         }
     }
-    (lines, singular)
+    Some((lines, singular))
 }
 
 /// Vectorised computation of a line of Γ²: combination of the lines of Γ¹.

@@ -258,6 +258,8 @@ impl Observer<'_> {
             conditions: Vec::new(),
         };
         let mut singular = Vec::new();
+        // Chunks whose lines are those of the platform.
+        let mut equal = Vec::new();
         for (projection, wanted) in self.projections.iter().zip(wanted) {
             let all = || (0..n).collect();
             let kept = projection.kept(&info).unwrap_or_else(all);
@@ -265,18 +267,21 @@ impl Observer<'_> {
             if conditioning.is_recorded {
                 chunk.conditions.push(choice.conditions(&jacobians, n * r));
             }
-            if *projection == Projection::Platform || !*wanted {
-                chunk.lines.push(Vec::new());
-                singular.push(None);
-            } else {
-                let (lines, failed) = projected(&platform, &choice, &jacobians, n * r);
-                chunk.lines.push(lines);
-                singular.push(failed.map(|sample| first + sample));
-            }
+            let projected = match projection {
+                Projection::Platform => None,
+                _ if *wanted => projected(&platform, &choice, &jacobians, n * r),
+                _ => Some(Default::default()),
+            };
+            equal.push(projected.is_none());
+            let (lines, failed) = projected.unwrap_or_default();
+            chunk.lines.push(lines);
+            singular.push(failed.map(|sample| first + sample));
         }
         // Compute other projections before moving the platform's rows.
-        let places = self.projections.iter().zip(&mut chunk.lines);
-        let mut places = places.filter(|(projection, _)| **projection == Projection::Platform);
+        let mut places = equal
+            .iter()
+            .zip(&mut chunk.lines)
+            .filter(|(equal, _)| **equal);
         if let Some((_, own)) = places.next() {
             places.for_each(|(_, more)| more.clone_from(&platform));
             *own = platform;

@@ -111,7 +111,8 @@ pub(crate) fn in_projections(
         _ => {
             let kept = projection.kept(&info).unwrap_or_else(|| (0..n).collect());
             let choice = KeptActuators::new(kept, &scales);
-            projected(lines, &choice, jacobians, n * r).0
+            let projected = projected(lines, &choice, jacobians, n * r);
+            projected.map_or_else(|| lines.to_vec(), |(lines, _)| lines)
         }
     };
     projections.iter().map(of).collect()

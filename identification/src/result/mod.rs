@@ -9,6 +9,7 @@ mod motor;
 mod regrouping;
 mod run;
 mod stage;
+mod stage_time;
 
 pub use cross_validation::CrossValidation;
 pub use estimate::{Estimate, Estimator, ParameterEstimate};
@@ -17,3 +18,4 @@ pub use motor::MotorParameter;
 pub use regrouping::Regrouping;
 pub use run::RunSummary;
 pub use stage::Stage;
+pub use stage_time::StageTime;

@@ -62,6 +62,9 @@ impl Wrap {
     }
 }
 
+/// A step below this fraction of a turn contains no turn, also with rounding.
+const CERTAIN: f64 = 0.49;
+
 /// Statistics of a watched column.
 #[derive(Debug)]
 pub(super) struct Watch {
@@ -135,7 +138,7 @@ impl Watch {
                 own.take(step, self.samples);
             }
         }
-        self.is_whole &= value.fract() == 0.0;
+        self.is_whole = self.is_whole && value.fract() == 0.0;
         self.low = self.low.min(value);
         self.high = self.high.max(value);
         self.samples += 1;
@@ -173,7 +176,13 @@ impl Watch {
 impl Candidate {
     /// Adds the next step, which leads to sample number `sample`.
     fn take(&mut self, logged: f64, sample: usize) {
-        let nearest = |step: f64| step - self.period * (step / self.period).round();
+        let nearest = |step: f64| {
+            // The usual case: no turn.
+            if step.abs() < CERTAIN * self.period {
+                return step;
+            }
+            step - self.period * (step / self.period).round()
+        };
         let step = nearest(logged);
         let before = self.step.replace(step);
         // Steps near half a turn change little if their direction is taken wrongly.

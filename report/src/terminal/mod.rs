@@ -52,6 +52,35 @@ pub fn tables(identification: &Identification) -> String {
     text
 }
 
+/// Times of the stages and checks, if they were measured.
+#[must_use]
+pub fn timings(identification: &Identification) -> String {
+    let all = &identification.timings;
+    if all.is_empty() {
+        return String::new();
+    }
+    let seconds = |value: f64| format!("{value:.3}");
+    let row = |name: String, elapsed: f64, processors: Option<f64>| {
+        let processors = processors.map_or_else(String::new, seconds);
+        vec![name, seconds(elapsed), processors]
+    };
+    let mut rows: Vec<Vec<String>> = all
+        .iter()
+        .map(|one| {
+            let check = if one.is_check { "check: " } else { "" };
+            let name = format!("{check}{}", one.stage);
+            row(name, one.seconds, one.processor_seconds)
+        })
+        .collect();
+    let elapsed = all.iter().map(|one| one.seconds).sum();
+    let processors = all.iter().map(|one| one.processor_seconds).sum();
+    rows.push(row(String::from("all"), elapsed, processors));
+    format!(
+        "\nTimes of the stages\n{}",
+        table(&["stage", "elapsed s", "processors s"], rows)
+    )
+}
+
 /// Table of physically consistent standard parameters.
 fn consistent(identification: &Identification, one: &Consistent) -> String {
     let rows = one.parameters.iter().map(|own| {

@@ -116,32 +116,38 @@ impl<'a> Context<'a> {
 /// Signature of a check.
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
-/// All checks, in the order of the report.
-const CHECKS: [Function; 24] = [
-    samples::raw_samples::check,
-    samples::cables::check,
-    units::check,
-    samples::repeated::check,
-    motion::excitation::check,
-    motion::motion_length::check,
-    motion::filters::check,
-    kinematics::closure::check,
-    torques::torque_faults::check,
-    torques::delay::check,
-    torques::smoothing::check,
-    torques::reversals::check,
-    samples::clock::check,
-    torques::gains::check,
-    kinematics::geometry::check,
-    parameters::payload_labels::check,
-    parameters::missing_parameters::check,
-    parameters::negative_parameters::check,
-    parameters::consistency::check,
-    residuals::relative_error::check,
-    residuals::residual_correlation::check,
-    residuals::regressor_errors::check,
-    residuals::partition::check,
-    residuals::held_out::check,
+/// All checks with what they examine, in the order of the report.
+const CHECKS: [(&str, Function); 24] = [
+    ("raw samples", samples::raw_samples::check),
+    ("cables", samples::cables::check),
+    ("units", units::check),
+    ("repeated samples", samples::repeated::check),
+    ("excitation", motion::excitation::check),
+    ("length of the motion", motion::motion_length::check),
+    ("filters", motion::filters::check),
+    ("closure of loops", kinematics::closure::check),
+    ("faults of torques", torques::torque_faults::check),
+    ("delays", torques::delay::check),
+    ("smoothed torques", torques::smoothing::check),
+    ("reversals", torques::reversals::check),
+    ("clock", samples::clock::check),
+    ("gains", torques::gains::check),
+    ("geometry", kinematics::geometry::check),
+    ("payload labels", parameters::payload_labels::check),
+    ("missing parameters", parameters::missing_parameters::check),
+    (
+        "negative parameters",
+        parameters::negative_parameters::check,
+    ),
+    ("consistency", parameters::consistency::check),
+    ("relative error", residuals::relative_error::check),
+    (
+        "correlated residuals",
+        residuals::residual_correlation::check,
+    ),
+    ("regressor errors", residuals::regressor_errors::check),
+    ("partition", residuals::partition::check),
+    ("validation runs", residuals::held_out::check),
 ];
 
 /// Removes units that follow from the torques if the range of a signal has already named that of
@@ -157,13 +163,17 @@ fn keep_first_units(checks: &mut Vec<Check>) {
     });
 }
 
-/// Runs all checks.
+/// Runs all checks; calls `begins` with what each examines.
 ///
 /// # Errors
 /// A log cannot be read any more.
-pub(crate) fn checks(context: &Context<'_>) -> Result<Vec<Check>, Error> {
+pub(crate) fn checks(
+    context: &Context<'_>,
+    begins: &dyn Fn(&'static str),
+) -> Result<Vec<Check>, Error> {
     let mut all = Vec::new();
-    for check in CHECKS {
+    for (name, check) in CHECKS {
+        begins(name);
         all.extend(check(context)?);
     }
     all.extend(residuals::relative_error::silent(context, &all));

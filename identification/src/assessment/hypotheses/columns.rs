@@ -105,7 +105,7 @@ impl FaultHypothesis {
     }
 
     /// Number of columns of its own; several faults together, and parts of one, have none.
-    const fn width(self) -> usize {
+    pub(super) const fn width(self) -> usize {
         match self {
             Self::Torque(_, Shape::Waves | Shape::LoadWaves) => WAVES,
             Self::Potential(joints) => joints.products(),

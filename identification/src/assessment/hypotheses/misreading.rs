@@ -23,25 +23,41 @@ impl Misreading {
         revolute || matches!(self, Self::Offset | Self::Scale)
     }
 
-    /// Error e(q) of unit size, and its time derivatives e' q̇ and e'' q̇² + e' q̈.
-    pub(super) fn at(self, motion: ActuatorState) -> [f64; 3] {
+    /// Error of unit size at a motion.
+    pub(super) fn at(self, motion: ActuatorState) -> PositionError {
         let ActuatorState {
             position,
             velocity,
             acceleration,
             ..
         } = motion;
-        let (sine, cosine) = position.sin_cos();
-        let [error, slope, bend] = match self {
-            Self::Offset => [1.0, 0.0, 0.0],
-            Self::Scale => [position, 1.0, 0.0],
-            Self::Sine => [sine, cosine, -sine],
-            Self::Cosine => [cosine, -sine, -cosine],
-        };
-        [
+        let of = |error: f64, slope: f64, bend: f64| PositionError {
             error,
-            slope * velocity,
-            bend * velocity * velocity + slope * acceleration,
-        ]
+            slope,
+            acceleration: bend * velocity * velocity + slope * acceleration,
+        };
+        match self {
+            Self::Offset => of(1.0, 0.0, 0.0),
+            Self::Scale => of(position, 1.0, 0.0),
+            Self::Sine => {
+                let (sine, cosine) = position.sin_cos();
+                of(sine, cosine, -sine)
+            }
+            Self::Cosine => {
+                let (sine, cosine) = position.sin_cos();
+                of(cosine, -sine, -cosine)
+            }
+        }
     }
+}
+
+/// Error e(q) of a position, and its derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PositionError {
+    /// e.
+    pub(super) error: f64,
+    /// e', the relative error of the velocity.
+    pub(super) slope: f64,
+    /// e'' q̇² + e' q̈, the error of the acceleration.
+    pub(super) acceleration: f64,
 }

@@ -37,6 +37,7 @@
 //! - `pairs`, `correlations`: correlated residuals of actuators;
 //! - `pace`: residual and motion over time;
 //! - `pass`: inputs of a pass over a run; `motion_data`: data of the rows; `run`: the pass;
+//! - `products`: products of the columns of a line, as far as they are not always zero;
 //! - `scores`: result of all passes;
 //! - `model_columns`: the model's columns in a test;
 //! - `scaled`: normal equations of columns with different units;
@@ -55,6 +56,7 @@ mod pairs;
 mod pass;
 mod potential;
 mod prediction;
+mod products;
 mod run;
 mod scaled;
 mod score_covariance;

@@ -9,11 +9,15 @@ use super::{
     misreading::Misreading,
     pass::Pass,
     prediction::{Prediction, dot, inputs_of},
+    products::live_columns::LiveColumns,
     shapes::ActuatorState,
 };
 use crate::{
     blocks::{BLOCK, evaluate, slice},
-    kinematics::{Motion, distribution::least_torques},
+    kinematics::{
+        Motion,
+        distribution::{are_identities, least_torques},
+    },
     regression::{columns::Reversal, states::SampledStates},
 };
 use overact_logs::Error;
@@ -79,9 +83,11 @@ impl<'a> MotionData<'a> {
             columns: pass.columns,
             base: pass.base,
             values: pass.frame.values,
+            jacobians,
+            is_direct: are_identities(jacobians, n, sizes.dof),
         };
-        let predicted = prediction.inputs(motion, states, 1.0 / frequency)?;
-        let [velocities, accelerations] = prediction.actuators(motion, jacobians)?;
+        let predicted = prediction.inputs(motion, states, jacobians, 1.0 / frequency)?;
+        let [velocities, accelerations] = prediction.actuators(motion)?;
         let signals = ActuatorSignals {
             positions: &positions,
             velocities: &velocities,
@@ -90,14 +96,14 @@ impl<'a> MotionData<'a> {
         };
         let actuators = signals.states(motion, Reversal::new(pass.settings));
         let torque_turns = rates(&torque_rates, n, frequency);
-        let common_filter =
-            prediction.common_filter(motion, &torques, &torque_turns, jacobians, &actuators)?;
+        let unchanged = prediction.unchanged(motion, &torques, &actuators)?;
+        let common_filter = prediction.common_filter(&unchanged, &torque_turns);
         let hypotheses = pass.frame.hypotheses;
         let moved = hypotheses
             .iter()
             .any(|one| matches!(one, FaultHypothesis::Offset(_)));
         let misread = if moved {
-            prediction.misread(motion, &torques, jacobians, &actuators)?
+            prediction.misread(&unchanged)?
         } else {
             Vec::new()
         };
@@ -149,39 +155,55 @@ impl<'a> MotionData<'a> {
 
     /// Overwrites `lines` with the rows of some samples, one vector per line of Γ¹.
     ///
-    /// Column order: base parameters, friction rates, Y, hypotheses, payload.
-    pub(super) fn rows(&self, samples: Range<usize>, lines: &mut [Vec<f64>]) {
+    /// Order of the live columns: base parameters, friction rates, Y, hypotheses, payload.
+    pub(super) fn rows(&self, samples: Range<usize>, live: &[LiveColumns], lines: &mut [Vec<f64>]) {
         let (pass, r) = (self.pass, lines.len());
-        let (width, p, count) = (pass.width(), pass.base.len(), pass.friction.len());
+        let (p, count) = (pass.base.len(), pass.friction.len());
         let load = pass.model.info().sizes.payload_parameters;
-        for rows in &mut *lines {
-            rows.resize(samples.len() * width, 0.0);
+        for (rows, live) in lines.iter_mut().zip(live) {
+            rows.resize(samples.len() * (live.decimated + 1), 0.0);
         }
         // Waves come last and are computed from decimated positions.
-        let narrow = width - p - count - 1 - load;
+        let narrow = pass.width() - p - count - 1 - load;
         let hypotheses = &pass.frame.hypotheses[..narrow];
         let mut factors = vec![0.0; narrow];
+        let mut own_factors = Vec::with_capacity(narrow);
         for (place, sample) in samples.enumerate() {
             let here = self.sample(sample);
             let all = factors.iter_mut().zip(hypotheses);
             all.for_each(|(factor, hypothesis)| *factor = here.factor(*hypothesis));
             let (block, inside) = (&self.base[sample / BLOCK], sample % BLOCK);
-            for (line, rows) in lines.iter_mut().enumerate() {
+            for (line, (rows, live)) in lines.iter_mut().zip(live).enumerate() {
+                let width = live.decimated + 1;
                 let row = &mut rows[place * width..(place + 1) * width];
-                let (base, row) = row.split_at_mut(p);
-                base.copy_from_slice(slice(&block[line], p, inside, 1));
-                let (late, row) = row.split_at_mut(count);
-                let rates = slice(&self.friction[line], count, sample, 1);
-                late.iter_mut()
-                    .zip(rates)
-                    .for_each(|(to, rate)| *to = -rate);
+                let (base, row) = row.split_at_mut(live.base.len());
+                pick(slice(&block[line], p, inside, 1), &live.base, base);
+                let (late, row) = row.split_at_mut(live.friction.len());
+                pick(
+                    slice(&self.friction[line], count, sample, 1),
+                    &live.friction,
+                    late,
+                );
+                late.iter_mut().for_each(|rate| *rate = -*rate);
                 row[0] = self.inputs[sample * r + line];
-                let (own, payload) = row[1..].split_at_mut(narrow);
-                here.entries(hypotheses, &factors, line, own);
+                let (own, payload) = row[1..].split_at_mut(live.hypotheses.len());
+                own_factors.clear();
+                own_factors.extend(live.places.iter().map(|place| factors[*place]));
+                here.entries(&live.hypotheses, &own_factors, line, own);
                 payload.copy_from_slice(slice(&self.payload, load, sample * r + line, 1));
             }
         }
     }
+}
+
+/// Copies the values at some `places`, or all values.
+fn pick(values: &[f64], places: &[usize], to: &mut [f64]) {
+    if values.len() == to.len() {
+        to.copy_from_slice(values);
+        return;
+    }
+    let picked = to.iter_mut().zip(places);
+    picked.for_each(|(to, place)| *to = values[*place]);
 }
 
 /// Rows of the base parameter columns, by block and line.

@@ -2,7 +2,7 @@
 
 use overact::Model;
 
-use super::sections::Frame;
+use super::{products::live_columns::AllColumns, sections::Frame};
 use crate::{
     regression::{columns::ColumnSet, projection::ModelKind},
     settings::Settings,
@@ -28,5 +28,16 @@ impl Pass<'_> {
     /// Columns of a row: base parameters, Y, one-column hypotheses, payload.
     pub(super) fn width(&self) -> usize {
         self.frame.layout.decimated + 1
+    }
+
+    /// All columns of the lines.
+    pub(super) fn all_columns(&self) -> AllColumns<'_> {
+        AllColumns {
+            columns: self.columns,
+            base: self.base,
+            friction: self.friction,
+            hypotheses: self.frame.hypotheses,
+            layout: self.frame.layout,
+        }
     }
 }

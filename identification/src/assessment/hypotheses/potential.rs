@@ -10,7 +10,7 @@ use overact::Model;
 use crate::kinematics::conditioning::couples;
 
 /// Largest number of joints; the number of products grows exponentially.
-const MOST: usize = 3;
+pub(super) const MOST: usize = 3;
 
 /// The first joints of a tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,6 +30,11 @@ impl FirstJoints {
         known.for_each(|(own, revolute)| *own = *revolute);
         let count = sizes.actuators.min(MOST);
         (is_tree && count > 1).then_some(Self { count, is_revolute })
+    }
+
+    /// Number of these joints.
+    pub(super) const fn count(self) -> usize {
+        self.count
     }
 
     /// Number of factors of a joint.

@@ -5,6 +5,8 @@
 //! the settings split by direction has no standard parameter, so it needs the regressor. Both take
 //! the sign of a velocity at the sample or over the interval, the same before and after the change.
 
+use std::borrow::Cow;
+
 use overact::{Columns, Function, Model};
 
 use super::{columns::rates, misreading::Misreading, shapes::ActuatorState};
@@ -33,6 +35,43 @@ pub(super) struct Prediction<'a> {
     pub(super) base: &'a [usize],
     /// Estimate of each base parameter.
     pub(super) values: &'a [f64],
+    /// J_p^inv of each sample, n × r.
+    pub(super) jacobians: &'a [f64],
+    /// Whether these are identities: the coordinates are the actuators' positions.
+    pub(super) is_direct: bool,
+}
+
+/// Motion of the actuators at all samples, with the poses that belong to it.
+struct ActuatorMotion {
+    poses: Vec<f64>,
+    /// Velocities and accelerations, samples × n.
+    rates: Vec<f64>,
+    changes: Vec<f64>,
+}
+
+impl ActuatorMotion {
+    /// That of a motion.
+    fn new(motion: &Motion, actuators: &[ActuatorState]) -> Self {
+        Self {
+            poses: motion.pose.clone(),
+            rates: actuators.iter().map(|one| one.velocity).collect(),
+            changes: actuators.iter().map(|one| one.acceleration).collect(),
+        }
+    }
+}
+
+/// A motion as it is, with what the derivatives with respect to its errors have in common.
+pub(super) struct Unchanged<'a> {
+    motion: &'a Motion,
+    /// Torques of the actuators.
+    torques: &'a [f64],
+    actuators: &'a [ActuatorState],
+    /// Motion of the actuators.
+    own: ActuatorMotion,
+    /// J_p^inv+ᵀ of each sample, n × r.
+    distributions: Cow<'a, [f64]>,
+    /// Y - W χ, samples × r.
+    left: Vec<f64>,
 }
 
 impl<'a> Prediction<'a> {
@@ -41,11 +80,12 @@ impl<'a> Prediction<'a> {
         Self { model, ..*self }
     }
 
-    /// Predicted Γ¹, samples × r, for samples one `interval` (s) apart.
+    /// Predicted Γ¹, samples × r, for samples one `interval` (s) apart with these `jacobians`.
     pub(super) fn inputs(
         &self,
         motion: &Motion,
         states: [&[f64]; 3],
+        jacobians: &[f64],
         interval: f64,
     ) -> Result<Vec<f64>, Error> {
         let sizes = self.model.info().sizes;
@@ -55,19 +95,19 @@ impl<'a> Prediction<'a> {
             return self.inputs_by_regressor(motion, states, interval);
         };
         let at = |error: overact::SampleError| motion.outside(error.sample, error.error);
-        let ask = |function: Function, inputs: &[&[f64]]| {
-            evaluate(self.model, function, inputs, motion.samples)
-        };
         let [pose, twist, acceleration] = states;
-        let inverse_dynamics = Function::InverseDynamics(Columns::Standard);
-        let torques = match ask(inverse_dynamics, &[pose, twist, acceleration, &parameters]) {
+        let inputs = [pose, twist, acceleration, &parameters];
+        let function = Function::InverseDynamics(Columns::Standard);
+        let torques = match evaluate(self.model, function, &inputs, motion.samples) {
             Err(error) if matches!(error.error, overact::Error::NotOffered { .. }) => {
                 return self.inputs_by_regressor(motion, states, interval);
             }
             torques => torques.map_err(at)?,
         };
-        let jacobians = ask(Function::InverseJacobian, &[pose]).map_err(at)?;
-        Ok(inputs_of(&jacobians, &torques, sizes.actuators, sizes.dof))
+        if self.is_direct {
+            return Ok(torques);
+        }
+        Ok(inputs_of(jacobians, &torques, sizes.actuators, sizes.dof))
     }
 
     /// The same by the columns of the model.
@@ -113,11 +153,11 @@ impl<'a> Prediction<'a> {
     }
 
     /// Actuator velocities J v and accelerations J v̇ + J̇ v, samples × n, with J = J_p^inv.
-    pub(super) fn actuators(
-        &self,
-        motion: &Motion,
-        jacobians: &[f64],
-    ) -> Result<[Vec<f64>; 2], Error> {
+    pub(super) fn actuators(&self, motion: &Motion) -> Result<[Vec<f64>; 2], Error> {
+        if self.is_direct {
+            return Ok([motion.twist.clone(), motion.acceleration.clone()]);
+        }
+        let jacobians = self.jacobians;
         let sizes = self.model.info().sizes;
         let (n, r) = (sizes.actuators, sizes.dof);
         let mut poses = motion.pose.clone();
@@ -132,7 +172,7 @@ impl<'a> Prediction<'a> {
         let mut all = [vec![0.0; motion.samples * n], vec![0.0; motion.samples * n]];
         for place in 0..motion.samples * n {
             let sample = place / n;
-            let rows = [jacobians, &later].map(|all| slice(all, r, place, 1));
+            let rows = [jacobians, later.as_slice()].map(|all| slice(all, r, place, 1));
             let rates = [&motion.twist, &motion.acceleration].map(|all| slice(all, r, sample, 1));
             let product = |row: &[f64], rate: &[f64]| -> f64 {
                 row.iter().zip(rate).map(|(a, b)| a * b).sum()
@@ -159,7 +199,7 @@ impl<'a> Prediction<'a> {
             .collect();
         let interval = 1.0 / motion.sampling_frequency;
         let states: [&[f64]; 3] = [&motion.pose, &twist, &acceleration];
-        let there = self.inputs(motion, states, interval / faster)?;
+        let there = self.inputs(motion, states, self.jacobians, interval / faster)?;
         Ok(here
             .iter()
             .zip(there)
@@ -196,53 +236,99 @@ impl<'a> Prediction<'a> {
         Ok(all)
     }
 
+    /// What the derivatives of a motion with these `torques` have in common.
+    ///
+    /// # Errors
+    /// A sample at which the model has no value.
+    pub(super) fn unchanged<'b>(
+        &'b self,
+        motion: &'b Motion,
+        torques: &'b [f64],
+        actuators: &'b [ActuatorState],
+    ) -> Result<Unchanged<'b>, Error> {
+        let sizes = self.model.info().sizes;
+        let own = ActuatorMotion::new(motion, actuators);
+        let distributions = if self.is_direct {
+            Cow::Borrowed(self.jacobians)
+        } else {
+            Cow::Owned(distributions(self.jacobians, sizes.actuators, sizes.dof))
+        };
+        Ok(Unchanged {
+            left: self.left(motion, &own, torques)?,
+            motion,
+            torques,
+            actuators,
+            own,
+            distributions,
+        })
+    }
+
     /// Derivative of Y - W χ with respect to all position errors, samples × n × errors × r.
     ///
-    /// `torques` are those of the actuators; `jacobians` has n × r entries per sample.
-    pub(super) fn misread(
-        &self,
-        motion: &Motion,
-        torques: &[f64],
-        jacobians: &[f64],
-        actuators: &[ActuatorState],
-    ) -> Result<Vec<f64>, Error> {
-        let errors = Misreading::ALL;
+    /// An error changes position, velocity and acceleration of one actuator. The derivatives with
+    /// respect to these three give those for all errors.
+    pub(super) fn misread(&self, all: &Unchanged<'_>) -> Result<Vec<f64>, Error> {
         let sizes = self.model.info().sizes;
-        let (n, r) = (sizes.actuators, sizes.dof);
-        let rates: Vec<f64> = actuators.iter().map(|one| one.velocity).collect();
-        let changes: Vec<f64> = actuators.iter().map(|one| one.acceleration).collect();
-        let here = self.left(motion, &motion.pose, &rates, &changes, torques)?;
-        let distributions = distributions(jacobians, n, r);
+        let (n, r, count) = (sizes.actuators, sizes.dof, Misreading::ALL.len());
         let revolute = self.model.info().actuator_is_revolute;
-        let count = errors.len();
-        let mut all = vec![0.0; motion.samples * n * count * r];
-        let mut step = vec![0.0; r];
-        for (number, (actuator, error)) in (0..n)
-            .flat_map(|actuator| errors.iter().map(move |error| (actuator, error)))
-            .enumerate()
-        {
-            if !error.concerns(revolute.get(actuator) == Some(&true)) {
-                continue;
-            }
-            let (mut poses, mut rates, mut changes) =
-                (motion.pose.clone(), rates.clone(), changes.clone());
-            for (sample, pose) in poses.chunks_exact_mut(sizes.pose).enumerate() {
-                let place = sample * n + actuator;
-                let [shift, rate, change] = error.at(actuators[place]);
-                rates[place] += STEP * rate;
-                changes[place] += STEP * change;
-                let row = slice(&distributions, r, place, 1);
-                let parts = step.iter_mut().zip(row);
-                parts.for_each(|(step, part)| *step = STEP * shift * part);
-                self.model.displace(pose, &step);
-            }
-            let there = self.left(motion, &poses, &rates, &changes, torques)?;
-            for (place, (a, b)) in here.iter().zip(&there).enumerate() {
-                let (sample, line) = (place / r, place % r);
-                all[(sample * n * count + number) * r + line] = (b - a) / STEP;
+        let mut misread = vec![0.0; all.motion.samples * n * count * r];
+        for actuator in 0..n {
+            let is_revolute = revolute.get(actuator) == Some(&true);
+            let [shifted, faster, accelerated] = self.of_actuator(all, actuator)?;
+            for sample in 0..all.motion.samples {
+                let state = all.actuators[sample * n + actuator];
+                let [shifted, faster, accelerated] =
+                    [&shifted, &faster, &accelerated].map(|own| slice(own, r, sample, 1));
+                for (number, error) in Misreading::ALL.iter().enumerate() {
+                    if !error.concerns(is_revolute) {
+                        continue;
+                    }
+                    let own = error.at(state);
+                    let place = ((sample * n + actuator) * count + number) * r;
+                    for (line, to) in misread[place..place + r].iter_mut().enumerate() {
+                        *to = own.error * shifted[line]
+                            + own.slope * faster[line]
+                            + own.acceleration * accelerated[line];
+                    }
+                }
             }
         }
-        Ok(all)
+        Ok(misread)
+    }
+
+    /// Derivatives of Y - W χ with respect to position, relative velocity and acceleration of an
+    /// actuator, samples × r.
+    ///
+    /// A relative change of the velocity never changes its sign.
+    fn of_actuator(&self, all: &Unchanged<'_>, actuator: usize) -> Result<[Vec<f64>; 3], Error> {
+        let sizes = self.model.info().sizes;
+        let (n, r) = (sizes.actuators, sizes.dof);
+        let derivative = |there: &ActuatorMotion| -> Result<Vec<f64>, Error> {
+            let there = self.left(all.motion, there, all.torques)?;
+            let both = all.left.iter().zip(&there);
+            Ok(both.map(|(a, b)| (b - a) / STEP).collect())
+        };
+        let mut moved = ActuatorMotion {
+            poses: all.own.poses.clone(),
+            rates: all.own.rates.clone(),
+            changes: all.own.changes.clone(),
+        };
+        let mut step = vec![0.0; r];
+        for (sample, pose) in moved.poses.chunks_exact_mut(sizes.pose).enumerate() {
+            let row = slice(&all.distributions, r, sample * n + actuator, 1);
+            let parts = step.iter_mut().zip(row);
+            parts.for_each(|(step, part)| *step = STEP * part);
+            self.model.displace(pose, &step);
+        }
+        let shifted = derivative(&moved)?;
+        moved.poses.clone_from(&all.own.poses);
+        let own = moved.rates.iter_mut().skip(actuator).step_by(n);
+        own.for_each(|rate| *rate += STEP * *rate);
+        let faster = derivative(&moved)?;
+        moved.rates.clone_from(&all.own.rates);
+        let own = moved.changes.iter_mut().skip(actuator).step_by(n);
+        own.for_each(|change| *change += STEP);
+        Ok([shifted, faster, derivative(&moved)?])
     }
 
     /// Derivative of Y - W χ with respect to s when each signal x becomes x + s ẍ, samples × r.
@@ -251,72 +337,76 @@ impl<'a> Prediction<'a> {
     /// `checks::torques::smoothing`. Terms that are linear in the motion do not change.
     /// `torque_turns` are the second derivatives of the torques. The result is zero if the change
     /// leaves the workspace.
-    pub(super) fn common_filter(
-        &self,
-        motion: &Motion,
-        torques: &[f64],
-        torque_turns: &[f64],
-        jacobians: &[f64],
-        actuators: &[ActuatorState],
-    ) -> Result<Vec<f64>, Error> {
+    pub(super) fn common_filter(&self, all: &Unchanged<'_>, torque_turns: &[f64]) -> Vec<f64> {
         let sizes = self.model.info().sizes;
         let (n, r) = (sizes.actuators, sizes.dof);
-        let velocities: Vec<f64> = actuators.iter().map(|one| one.velocity).collect();
-        let accelerations: Vec<f64> = actuators.iter().map(|one| one.acceleration).collect();
-        let jerks = rates(&accelerations, n, motion.sampling_frequency);
-        let snaps = rates(&jerks, n, motion.sampling_frequency);
+        let ActuatorMotion {
+            poses,
+            rates: velocities,
+            changes: accelerations,
+        } = &all.own;
+        let jerks = rates(accelerations, n, all.motion.sampling_frequency);
+        let snaps = rates(&jerks, n, all.motion.sampling_frequency);
         let smoothed = |values: &[f64], bends: &[f64]| -> Vec<f64> {
             let both = values.iter().zip(bends);
             both.map(|(value, bend)| value + SQUARE * bend).collect()
         };
-        let mut poses = motion.pose.clone();
-        let steps = inputs_of(&distributions(jacobians, n, r), &accelerations, n, r);
-        for (pose, step) in poses
+        let mut poses = poses.clone();
+        let steps = inputs_of(&all.distributions, accelerations, n, r);
+        let mut step = vec![0.0; r];
+        for (pose, own) in poses
             .chunks_exact_mut(sizes.pose)
             .zip(steps.chunks_exact(r))
         {
-            let step: Vec<f64> = step.iter().map(|part| SQUARE * part).collect();
+            let parts = step.iter_mut().zip(own);
+            parts.for_each(|(step, part)| *step = SQUARE * part);
             self.model.displace(pose, &step);
         }
-        let here = self.left(motion, &motion.pose, &velocities, &accelerations, torques)?;
-        let there = self.left(
-            motion,
-            &poses,
-            &smoothed(&velocities, &jerks),
-            &smoothed(&accelerations, &snaps),
-            &smoothed(torques, torque_turns),
-        );
-        let Ok(there) = there else {
-            return Ok(vec![0.0; here.len()]);
+        let there = ActuatorMotion {
+            poses,
+            rates: smoothed(velocities, &jerks),
+            changes: smoothed(accelerations, &snaps),
         };
-        let both = here.iter().zip(&there);
-        Ok(both.map(|(a, b)| (b - a) / SQUARE).collect())
+        let torques = smoothed(all.torques, torque_turns);
+        let Ok(there) = self.left(all.motion, &there, &torques) else {
+            return vec![0.0; all.left.len()];
+        };
+        let both = all.left.iter().zip(&there);
+        both.map(|(a, b)| (b - a) / SQUARE).collect()
     }
 
-    /// Y - W χ at other poses, velocities and accelerations, with the same torques.
+    /// Y - W χ for another motion of the actuators, with these torques.
     fn left(
         &self,
         motion: &Motion,
-        poses: &[f64],
-        rates: &[f64],
-        changes: &[f64],
+        there: &ActuatorMotion,
         torques: &[f64],
     ) -> Result<Vec<f64>, Error> {
         let sizes = self.model.info().sizes;
         let (n, r) = (sizes.actuators, sizes.dof);
-        let at = |error: overact::SampleError| motion.outside(error.sample, error.error);
-        let ask = |function: Function, inputs: &[&[f64]]| {
-            evaluate(self.model, function, inputs, motion.samples).map_err(at)
-        };
-        let twist = ask(Function::TwistFromActuators, &[poses, rates])?;
-        let acceleration = ask(
-            Function::AccelerationFromActuators,
-            &[poses, &twist, changes],
-        )?;
-        let jacobians = ask(Function::InverseJacobian, &[poses])?;
         let interval = 1.0 / motion.sampling_frequency;
-        let predicted = self.inputs(motion, [poses, &twist, &acceleration], interval)?;
-        let mut left = inputs_of(&jacobians, torques, n, r);
+        let ActuatorMotion {
+            poses,
+            rates,
+            changes,
+        } = there;
+        let (mut left, predicted) = if self.is_direct {
+            let states: [&[f64]; 3] = [poses, rates, changes];
+            let predicted = self.inputs(motion, states, self.jacobians, interval)?;
+            (torques.to_vec(), predicted)
+        } else {
+            let at = |error: overact::SampleError| motion.outside(error.sample, error.error);
+            let ask = |function: Function, inputs: &[&[f64]]| {
+                evaluate(self.model, function, inputs, motion.samples).map_err(at)
+            };
+            let twist = ask(Function::TwistFromActuators, &[poses, rates])?;
+            let inputs: [&[f64]; 3] = [poses, &twist, changes];
+            let acceleration = ask(Function::AccelerationFromActuators, &inputs)?;
+            let jacobians = ask(Function::InverseJacobian, &[poses])?;
+            let states: [&[f64]; 3] = [poses, &twist, &acceleration];
+            let predicted = self.inputs(motion, states, &jacobians, interval)?;
+            (inputs_of(&jacobians, torques, n, r), predicted)
+        };
         let both = left.iter_mut().zip(predicted);
         both.for_each(|(y, w)| *y -= w);
         Ok(left)

@@ -5,6 +5,7 @@ use overact::Function;
 use super::{
     motion_data::MotionData,
     pass::Pass,
+    products::live_columns::LiveColumns,
     sections::{RunScores, Sink, Tempo},
 };
 use crate::{
@@ -12,7 +13,8 @@ use crate::{
     filters::Decimation,
     kinematics::{
         Motions,
-        conditioning::{KeptActuators, home_scales},
+        conditioning::{KeptActuators, couples, home_scales},
+        distribution::are_identities,
     },
     regression::{chunk::projected, phase_sums::Phases, projection::ModelKind},
 };
@@ -25,17 +27,43 @@ impl Pass<'_> {
     /// Reads a run, with the phases of its periodic motion.
     pub(super) fn run(&self, log: &Log, phases: Option<Phases>) -> Result<RunScores, Error> {
         let lines = self.model.info().sizes.dof;
+        let is_uncoupled = self.kind == ModelKind::Joints && !couples(self.model);
+        let all = self.all_columns();
+        let of_actuators = || all.of_actuators(self.model, self.settings.seed);
+        let mut uncoupled = is_uncoupled.then(of_actuators).flatten();
+        let all = all.in_all(lines);
+        loop {
+            let live = uncoupled.as_ref().unwrap_or(&all);
+            if let Some(scores) = self.read(log, phases, live, uncoupled.is_some())? {
+                return Ok(scores);
+            }
+            uncoupled = None;
+        }
+    }
+
+    /// Reads a run with these columns in each line.
+    ///
+    /// `None` if they are those of actuators that are uncoupled at home, and coupled elsewhere.
+    fn read(
+        &self,
+        log: &Log,
+        phases: Option<Phases>,
+        live: &[LiveColumns],
+        is_uncoupled: bool,
+    ) -> Result<Option<RunScores>, Error> {
+        let lines = live.len();
         let mut motions = Motions::new(self.model, log, self.settings)?.unwatched();
         let decimator = self
             .settings
             .decimator(self.decimation, log.sampling_frequency())?;
         let samples = motions.samples();
-        let mut streams: Vec<Decimation> = (0..lines)
-            .map(|_| decimator.stream(self.width(), samples))
+        let mut streams: Vec<Decimation> = live
+            .iter()
+            .map(|own| decimator.stream(own.decimated + 1, samples))
             .collect::<Result<_, _>>()?;
         let actuators = self.model.info().sizes.actuators;
         let mut places = decimator.stream(actuators, samples)?;
-        let mut sink = Sink::new(self.frame, decimator.kept(samples), phases);
+        let mut sink = Sink::new(self.frame, live, decimator.kept(samples), phases);
         let frequency = log.sampling_frequency();
         let mut tempo = Tempo {
             start: self.settings.skip_start as f64 / frequency,
@@ -54,12 +82,15 @@ impl Pass<'_> {
                 motion.samples,
             );
             let jacobians = jacobians.map_err(|error| motion.outside(error.sample, error.error))?;
+            if is_uncoupled && !are_identities(&jacobians, actuators, lines) {
+                return Ok(None);
+            }
             let motion_data = MotionData::new(self, &motion, &jacobians)?;
             tempo.take(&motion_data.actuators);
             let mut kept: Vec<Vec<f64>> = vec![Vec::new(); lines];
             for first in (0..motion.samples).step_by(TOGETHER) {
                 let count = TOGETHER.min(motion.samples - first);
-                motion_data.rows(first..first + count, &mut rows);
+                motion_data.rows(first..first + count, live, &mut rows);
                 let jacobians = slice(&jacobians, size, first, count);
                 let projected = self.projected(&rows, choice.as_ref(), jacobians);
                 let rows = projected.as_ref().unwrap_or(&rows);
@@ -70,10 +101,10 @@ impl Pass<'_> {
             places.push(&motion_data.positions, &mut at);
             sink.take(&kept, &at);
         }
-        Ok(sink.into_scores(tempo))
+        Ok(Some(sink.into_scores(tempo)))
     }
 
-    /// Rows of Γ¹ in the projection of the estimate's model; `None` for the platform projection.
+    /// Rows of Γ¹ in the projection of the estimate's model; `None` if they are equal.
     fn projected(
         &self,
         lines: &[Vec<f64>],
@@ -81,7 +112,8 @@ impl Pass<'_> {
         jacobians: &[f64],
     ) -> Option<Vec<Vec<f64>>> {
         let sizes = self.model.info().sizes;
-        Some(projected(lines, choice?, jacobians, sizes.actuators * sizes.dof).0)
+        let projected = projected(lines, choice?, jacobians, sizes.actuators * sizes.dof);
+        projected.map(|(lines, _)| lines)
     }
 
     /// The actuators on which the estimate's model projects, if it does.

@@ -11,7 +11,10 @@ use super::{
     model_columns::ModelColumns,
     sections::{MotionMean, RunScores},
 };
-use crate::estimation::periodic_variance::{SumVariance, VarianceRatio};
+use crate::estimation::{
+    correlation::square,
+    periodic_variance::{SumVariance, VarianceRatio},
+};
 
 /// Orthonormal columns of a group outside the model's columns: z⊥ = (z - W B) Mᵀ.
 pub(super) struct OrthogonalColumns<'a> {
@@ -179,7 +182,7 @@ impl OrthogonalColumns<'_> {
             self.model_columns.gram.white(&of(&contribution.fitted)),
             of(&contribution.own),
         );
-        let taken = model.tr_mul(&model) + group.tr_mul(&group);
+        let taken = square(&model) + square(&group);
         let spectrum = |m: usize| contribution.own[m][(i, i)];
         DMatrix::from_fn(count, count, |a, b| {
             spectrum(a.abs_diff(b)) + spectrum(a + b + 2) - taken[(a, b)]

@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
-use nalgebra::{DMatrix, DMatrixView, DMatrixViewMut, DVector};
+use nalgebra::{DMatrix, DMatrixView, DVector};
 
 use super::{
     columns::{FaultHypothesis, Layout},
     pairs::Pairs,
+    potential::MOST,
+    products::{LineGroup, Products, WeightedRows, live_columns::LiveColumns},
     shapes::{ActuatorState, PositionRange, Shape},
 };
 use crate::{
@@ -16,26 +18,6 @@ use crate::{
     },
     regression::phase_sums::{PhaseSums, Phases},
 };
-
-/// Products of columns and residual, one column per section or cosine.
-///
-/// Cosines are cos(π m (k + 1/2)/K) over the K sections, m = 0 … 2 B. W are the columns of the base
-/// parameters, Z all columns.
-#[derive(Debug, Clone)]
-struct Products {
-    /// Wᵀ Z, p × columns, weighted.
-    cross: DMatrix<f64>,
-    /// Products of the columns of each block with each other, block by block.
-    own: DMatrix<f64>,
-    /// Zᵀ ρ.
-    scores: DMatrix<f64>,
-}
-
-/// Weighted rows of all columns, and their residual.
-struct WeightedRows {
-    columns: DMatrix<f64>,
-    residual: DVector<f64>,
-}
 
 /// Scores of one run, as sums over cosines of its time.
 #[derive(Debug, Clone)]
@@ -93,44 +75,6 @@ impl Tempo {
     }
 }
 
-impl Products {
-    /// Products without rows.
-    fn new(layout: &Layout, sections: usize) -> Self {
-        Self {
-            cross: DMatrix::zeros(layout.base * layout.columns, sections),
-            own: DMatrix::zeros(layout.squares, sections),
-            scores: DMatrix::zeros(layout.columns, sections),
-        }
-    }
-
-    /// Adds rows to a section.
-    fn add(&mut self, layout: &Layout, section: usize, rows: &WeightedRows) {
-        let all = &rows.columns;
-        let size = layout.base * layout.columns;
-        let cross = &mut self.cross.as_mut_slice()[section * size..(section + 1) * size];
-        let mut cross = DMatrixViewMut::from_slice(cross, layout.base, layout.columns);
-        cross.gemm(1.0, &all.columns(0, layout.base).transpose(), all, 1.0);
-        let first = section * layout.squares;
-        for (block, place) in layout.blocks.iter().zip(&layout.places) {
-            let own = &mut self.own.as_mut_slice()[first + place.start..first + place.end];
-            let mut own = DMatrixViewMut::from_slice(own, block.len(), block.len());
-            let columns = all.select_columns(block);
-            own.gemm_tr(1.0, &columns, &columns, 1.0);
-        }
-        let mut scores = self.scores.column_mut(section);
-        scores.gemv_tr(1.0, all, &rows.residual, 1.0);
-    }
-
-    /// Sums of the sections over cosines.
-    fn over(&self, waves: &DMatrix<f64>) -> Self {
-        Self {
-            cross: &self.cross * waves,
-            own: &self.own * waves,
-            scores: &self.scores * waves,
-        }
-    }
-}
-
 impl RunScores {
     /// Wᵀ Z over cosine m.
     pub(super) fn cross(&self, layout: &Layout, m: usize) -> DMatrixView<'_, f64> {
@@ -180,6 +124,10 @@ pub(super) struct Frame<'a> {
 /// Accumulates the equations of a run.
 pub(super) struct Sink<'a> {
     frame: Frame<'a>,
+    /// Live columns of each line, the index of each column among them, and lines alike.
+    live: &'a [LiveColumns],
+    indices: Vec<Vec<Option<usize>>>,
+    groups: Vec<LineGroup>,
     /// Number of samples so far, and in total.
     taken: usize,
     expected: usize,
@@ -190,15 +138,19 @@ pub(super) struct Sink<'a> {
     products: Products,
     pairs: Pairs,
     equations: usize,
-    lines: usize,
     squares: Vec<f64>,
     phases: Option<Phases>,
     folds: Vec<PhaseSums>,
 }
 
 impl<'a> Sink<'a> {
-    /// For this number of samples, with the phases of a periodic motion.
-    pub(super) fn new(frame: Frame<'a>, instants: usize, phases: Option<Phases>) -> Self {
+    /// For lines with these columns and this number of samples, with the phases of a periodic motion.
+    pub(super) fn new(
+        frame: Frame<'a>,
+        live: &'a [LiveColumns],
+        instants: usize,
+        phases: Option<Phases>,
+    ) -> Self {
         let columns_of = |wanted: fn(&FaultHypothesis) -> bool| -> Vec<usize> {
             let hypotheses = frame.hypotheses.iter().zip(&frame.layout.blocks);
             let wanted = hypotheses.filter(|(one, _)| wanted(one));
@@ -210,8 +162,12 @@ impl<'a> Sink<'a> {
             columns_of(|one| matches!(one, FaultHypothesis::Torque(_, Shape::Constant)));
         let gains = columns_of(|one| matches!(one, FaultHypothesis::Gain(_)));
         let sections = (SECTIONS * cosines(instants)).min(instants).max(1);
+        let indices = live.iter().map(|own| own.indices(frame.layout.columns));
         Self {
             frame,
+            live,
+            indices: indices.collect(),
+            groups: LineGroup::all(frame.layout, live),
             taken: 0,
             expected: instants,
             pairs: Pairs::new(constants.len(), sections),
@@ -219,7 +175,6 @@ impl<'a> Sink<'a> {
             gains,
             products: Products::new(frame.layout, sections),
             equations: 0,
-            lines: 0,
             squares: Vec::new(),
             phases,
             folds: Vec::new(),
@@ -240,7 +195,7 @@ impl<'a> Sink<'a> {
             cosines,
             square: self.squares.iter().sum(),
             equations: self.equations,
-            lines: self.lines,
+            lines: self.live.len(),
             squares: self.squares,
             tempo,
             folds: self.folds,
@@ -253,10 +208,11 @@ impl<'a> Sink<'a> {
         if count == 0 {
             return;
         }
+        let gradients = self.gradients(positions);
         let taken: Vec<WeightedRows> = lines
             .iter()
             .enumerate()
-            .map(|(line, rows)| self.line(line, rows, count, positions))
+            .map(|(line, rows)| self.line(line, rows, positions, &gradients))
             .collect();
         self.fold(&taken);
         let mut first = 0;
@@ -264,16 +220,20 @@ impl<'a> Sink<'a> {
             let section = self.section(first);
             let same = (first..count).take_while(|sample| self.section(*sample) == section);
             let part = first..first + same.count();
-            let rows = together(&taken, part.clone());
-            self.products.add(self.frame.layout, section, &rows);
+            for group in &self.groups {
+                let lines: Vec<&WeightedRows> =
+                    group.lines.iter().map(|line| &taken[*line]).collect();
+                let rows = together(&lines, part.clone());
+                self.products.add(self.frame.layout, section, group, &rows);
+            }
             first = part.end;
         }
         self.equations += count * lines.len();
-        self.lines = lines.len();
         for sample in 0..count {
             let (n, constants) = (self.constants.len(), &self.constants);
             let jacobian = DMatrix::from_fn(n, lines.len(), |i, line| {
-                taken[line].columns[(sample, constants[i])]
+                let place = self.indices[line][constants[i]];
+                place.map_or(0.0, |place| taken[line].columns[(sample, place)])
             });
             let residual = DVector::from_fn(lines.len(), |line, _| taken[line].residual[sample]);
             self.pairs.add(self.section(sample), &jacobian, &residual);
@@ -287,15 +247,19 @@ impl<'a> Sink<'a> {
         let Some(phases) = self.phases else {
             return;
         };
+        let width = self.frame.layout.columns + 1;
         if self.folds.is_empty() {
-            let fold = |_| PhaseSums::new(phases, self.frame.layout.columns + 1);
+            let fold = |_| PhaseSums::new(phases, width);
             self.folds = (0..lines.len()).map(fold).collect();
         }
-        for (fold, line) in self.folds.iter_mut().zip(lines) {
+        for ((fold, line), live) in self.folds.iter_mut().zip(lines).zip(self.live) {
+            let mut whole = vec![0.0; width];
             let rows = line.columns.row_iter().zip(line.residual.iter());
             for (sample, (row, rest)) in rows.enumerate() {
-                let row = row.iter().chain(std::iter::once(rest));
-                fold.add(self.taken + sample, row);
+                let columns = live.columns.iter().zip(row.iter());
+                columns.for_each(|(column, value)| whole[*column] = *value);
+                whole[width - 1] = *rest;
+                fold.add(self.taken + sample, whole.iter());
             }
         }
     }
@@ -307,25 +271,36 @@ impl<'a> Sink<'a> {
         section.min(sections - 1)
     }
 
-    /// Weighted rows of a line at `count` samples.
-    fn line(&self, line: usize, rows: &[f64], count: usize, positions: &[f64]) -> WeightedRows {
-        let layout = self.frame.layout;
+    /// Weighted rows of a line, from its decimated rows.
+    fn line(
+        &self,
+        line: usize,
+        rows: &[f64],
+        positions: &[f64],
+        gradients: &[Gradients],
+    ) -> WeightedRows {
+        let live = &self.live[line];
+        let count = rows.len() / (live.decimated + 1);
         let weight = self.frame.weights.get(line).copied().unwrap_or(1.0);
-        let all = DMatrix::from_row_slice(count, rows.len() / count, rows) * weight;
-        let mut residual: DVector<f64> = all.column(layout.base).clone_owned();
-        for (column, value) in self.frame.values.iter().enumerate() {
-            residual.axpy(-value, &all.column(column), 1.0);
+        let all = DMatrix::from_row_slice(count, live.decimated + 1, rows) * weight;
+        let models = live.models();
+        let mut residual: DVector<f64> = all.column(models).clone_owned();
+        for (place, column) in live.columns[..models].iter().enumerate() {
+            let value = self.frame.values.get(*column).copied().unwrap_or(0.0);
+            residual.axpy(-value, &all.column(place), 1.0);
         }
-        let mut columns = all.remove_column(layout.base);
-        columns.resize_horizontally_mut(layout.columns, 0.0);
-        self.add_waves(&mut columns, positions);
-        self.add_potentials(&mut columns, positions);
+        let mut columns = all.remove_column(models);
+        columns.resize_horizontally_mut(live.columns.len(), 0.0);
+        self.add_waves(&self.indices[line], &mut columns, positions);
+        self.add_potentials(&self.indices[line], &mut columns, gradients);
         WeightedRows { columns, residual }
     }
 
     /// Fills in the waves of decimated positions, multiplied by the column of a constant torque, or
     /// by that of the gain for waves of the load.
-    fn add_waves(&self, all: &mut DMatrix<f64>, positions: &[f64]) {
+    ///
+    /// `indices` are those of all columns among the columns of the line.
+    fn add_waves(&self, indices: &[Option<usize>], all: &mut DMatrix<f64>, positions: &[f64]) {
         let n = self.constants.len();
         for (hypothesis, block) in self.frame.hypotheses.iter().zip(&self.frame.layout.blocks) {
             let (actuator, factors) = match *hypothesis {
@@ -333,39 +308,72 @@ impl<'a> Sink<'a> {
                 FaultHypothesis::Torque(actuator, Shape::LoadWaves) => (actuator, &self.gains),
                 _ => continue,
             };
+            let first = block.first().and_then(|column| indices[*column]);
+            let (Some(first), Some(factor)) = (first, indices[factors[actuator]]) else {
+                continue;
+            };
             let position_range = self.frame.position_ranges[actuator];
             for row in 0..all.nrows() {
-                let factor = all[(row, factors[actuator])];
+                let factor = all[(row, factor)];
                 let waves = position_range.waves(positions[row * n + actuator]);
-                for (column, wave) in block.iter().zip(waves) {
-                    all[(row, *column)] = factor * wave;
+                for (wave, value) in waves.iter().enumerate() {
+                    all[(row, first + wave)] = factor * value;
                 }
             }
         }
     }
 
+    /// Gradients of all products of a potential at decimated positions, product by product.
+    fn gradients(&self, positions: &[f64]) -> Vec<Gradients> {
+        let rows = positions.chunks_exact(self.constants.len().max(1));
+        let mut potentials = self.frame.hypotheses.iter();
+        let potential = potentials.find_map(|one| match one {
+            FaultHypothesis::Potential(joints) => Some(*joints),
+            _ => None,
+        });
+        let Some(joints) = potential else {
+            return Vec::new();
+        };
+        let all = |row: &[f64]| -> Gradients {
+            let products = 0..joints.products();
+            products
+                .map(|product| joints.gradient(product, row))
+                .collect()
+        };
+        rows.map(all).collect()
+    }
+
     /// Fills in the gradients of potentials, multiplied by the columns of constant torques.
-    fn add_potentials(&self, all: &mut DMatrix<f64>, positions: &[f64]) {
-        let n = self.constants.len();
+    fn add_potentials(
+        &self,
+        indices: &[Option<usize>],
+        all: &mut DMatrix<f64>,
+        gradients: &[Gradients],
+    ) {
         for (hypothesis, block) in self.frame.hypotheses.iter().zip(&self.frame.layout.blocks) {
-            let FaultHypothesis::Potential(joints) = *hypothesis else {
+            let first = block.first().and_then(|column| indices[*column]);
+            let (FaultHypothesis::Potential(_), Some(first)) = (hypothesis, first) else {
                 continue;
             };
-            for row in 0..all.nrows() {
-                let positions = &positions[row * n..(row + 1) * n];
-                for (product, column) in block.iter().enumerate() {
-                    let gradient = joints.gradient(product, positions);
+            for (row, gradients) in gradients.iter().enumerate() {
+                for (product, gradient) in gradients.iter().enumerate() {
                     let torques = self.constants.iter().zip(gradient);
-                    let torques = torques.map(|(constant, part)| all[(row, *constant)] * part);
-                    all[(row, *column)] = torques.sum();
+                    let torques = torques.map(|(constant, part)| {
+                        let place = indices[*constant];
+                        place.map_or(0.0, |place| all[(row, place)] * part)
+                    });
+                    all[(row, first + product)] = torques.sum();
                 }
             }
         }
     }
 }
 
-/// Rows of some samples of all lines, stacked line by line.
-fn together(lines: &[WeightedRows], instants: Range<usize>) -> WeightedRows {
+/// Gradients of the products of a potential at one time.
+type Gradients = Vec<[f64; MOST]>;
+
+/// Rows of some samples of lines, stacked line by line.
+fn together(lines: &[&WeightedRows], instants: Range<usize>) -> WeightedRows {
     let count = instants.len();
     let width = lines.first().map_or(0, |own| own.columns.ncols());
     let mut columns = DMatrix::zeros(lines.len() * count, width);

@@ -46,6 +46,12 @@ impl Scores {
         }
     }
 
+    /// Tests all hypotheses with the estimate's own columns, for later requests.
+    pub(crate) fn test_all(&self) {
+        let first = Group::hypothesis(0);
+        self.test(&first, &self.selected);
+    }
+
     /// Tests a group with these columns in the model.
     fn tested(&self, group: &Group, model_columns: &ModelColumns) -> Option<WaldTest> {
         let layout = &self.layout;

@@ -32,6 +32,7 @@ use rayon::prelude::*;
 use super::{
     estimate::Estimation,
     fourier::{Fourier, Spectrum},
+    nonzero::{at, nonzero},
 };
 use crate::{
     regression::system::{Stretch, System},
@@ -186,9 +187,9 @@ impl Context<'_> {
             };
             let scaled: Vec<[f64; 3]> = (0..bins).map(scaled).collect();
             // Column by column, as stored in memory.
-            for column in 0..p {
+            for (column, place) in line.places.iter().enumerate() {
                 let (mut to_real, mut to_imaginary) =
-                    (real.column_mut(column), imaginary.column_mut(column));
+                    (real.column_mut(*place), imaginary.column_mut(*place));
                 let to = to_real.iter_mut().zip(to_imaginary.iter_mut());
                 let (mut own_real, mut own_imaginary) =
                     (own.0.column_mut(column), own.1.column_mut(column));
@@ -200,17 +201,24 @@ impl Context<'_> {
                     *b *= added;
                 }
             }
-            share += square(&own.0) + square(&own.1);
+            let squares = square(&own.0) + square(&own.1);
+            for (to, from) in line.places.iter().zip(squares.column_iter()) {
+                for (row, value) in line.places.iter().zip(from.iter()) {
+                    share[(*row, *to)] += value;
+                }
+            }
         }
         share + square(&real) + square(&imaginary)
     }
 
     /// Spectra of a line.
     fn line(&self, fourier: &Fourier, rows: &View<'_>, weight: f64) -> Line {
-        let (real, imaginary) = self.spectra(fourier, rows);
+        let places = nonzero(rows, self.selected);
+        let (real, imaginary) = spectra(fourier, rows, &at(self.selected, &places));
+        let inverse = self.inverse.select_rows(&places).select_columns(&places);
         let mut leverage = vec![0.0; fourier.frequencies()];
         for part in [&real, &imaginary] {
-            let product = part * &self.inverse;
+            let product = part * &inverse;
             for (own, part) in product.column_iter().zip(part.column_iter()) {
                 for ((leverage, a), b) in leverage.iter_mut().zip(&own).zip(&part) {
                     *leverage += weight * a * b;
@@ -219,31 +227,33 @@ impl Context<'_> {
         }
         Line {
             residual: fourier.single(&residual(rows, self.selected, self.values)),
+            places,
             weight,
             real,
             imaginary,
             leverage,
         }
     }
+}
 
-    /// Real and imaginary parts of the spectra of the selected columns, frequencies × columns.
-    fn spectra(&self, fourier: &Fourier, rows: &View<'_>) -> (DMatrix<f64>, DMatrix<f64>) {
-        let bins = fourier.frequencies();
-        let (mut real, mut imaginary) = (Vec::new(), Vec::new());
-        for pair in self.selected.chunks(2) {
-            let column = |index: usize| -> Vec<f64> {
-                let column = pair.get(index).map(|&column| rows.column(column));
-                column.map_or_else(Vec::new, |column| column.iter().copied().collect())
-            };
-            let spectra = fourier.pair(&column(0), &column(1));
-            for spectrum in spectra.into_iter().take(pair.len()) {
-                real.extend(spectrum.real);
-                imaginary.extend(spectrum.imaginary);
-            }
+/// Real and imaginary parts of the spectra of the columns `selected`, frequencies × columns.
+fn spectra(fourier: &Fourier, rows: &View<'_>, selected: &[usize]) -> (DMatrix<f64>, DMatrix<f64>) {
+    let bins = fourier.frequencies();
+    let size = bins * selected.len();
+    let (mut real, mut imaginary) = (Vec::with_capacity(size), Vec::with_capacity(size));
+    for pair in selected.chunks(2) {
+        let column = |index: usize| -> Vec<f64> {
+            let column = pair.get(index).map(|&column| rows.column(column));
+            column.map_or_else(Vec::new, |column| column.iter().copied().collect())
+        };
+        let spectra = fourier.pair(&column(0), &column(1));
+        for spectrum in spectra.into_iter().take(pair.len()) {
+            real.extend(spectrum.real);
+            imaginary.extend(spectrum.imaginary);
         }
-        let matrix = |values| DMatrix::from_vec(bins, self.selected.len(), values);
-        (matrix(real), matrix(imaginary))
     }
+    let matrix = |values| DMatrix::from_vec(bins, selected.len(), values);
+    (matrix(real), matrix(imaginary))
 }
 
 /// Mᵀ M as a matrix product, which is faster than a product of columns.
@@ -253,6 +263,8 @@ pub(crate) fn square(matrix: &DMatrix<f64>) -> DMatrix<f64> {
 
 /// Spectra of the residual and the columns of a line.
 struct Line {
+    /// Places of the columns that are not zero.
+    places: Vec<usize>,
     weight: f64,
     residual: Spectrum,
     real: DMatrix<f64>,

@@ -170,6 +170,22 @@ struct Section {
     gram: DMatrix<f64>,
 }
 
+impl Section {
+    /// Adds products of the columns at some places to G.
+    fn add(&mut self, products: &DMatrix<f64>, places: &[usize]) {
+        if places.len() == self.gram.ncols() {
+            self.gram += products;
+            return;
+        }
+        for (to, from) in places.iter().zip(products.column_iter()) {
+            let mut column = self.gram.column_mut(*to);
+            for (row, value) in places.iter().zip(from.iter()) {
+                column[*row] += value;
+            }
+        }
+    }
+}
+
 /// Moments of one parameter's variance estimate for noise white in time.
 struct Moments {
     /// True variance.
@@ -216,11 +232,12 @@ impl<'a> Context<'a> {
     /// Σ_t V_t of a stretch, for columns only.
     fn noise(&self, stretch: &Stretch) -> DMatrix<f64> {
         let p = self.selected.len();
+        let nonzero = self.nonzero(stretch);
         let mut sum = DMatrix::zeros(p, p);
         let sections = counts(stretch).map_or(0, |(_, sections)| sections);
         for section in 0..sections {
             let range = range(stretch, section, sections);
-            let scores = self.section(stretch, range, false).scores;
+            let scores = self.section(stretch, &nonzero, range, false).scores;
             let own = scores.columns(0, p);
             sum.gemm(1.0, &own.transpose(), &own, 1.0);
         }
@@ -245,6 +262,7 @@ impl<'a> Context<'a> {
     /// Computes the sums of all sections of a stretch.
     fn sections(&self, stretch: &Stretch, sections: usize) -> Sections {
         let turned = self.influence().transpose();
+        let nonzero = self.nonzero(stretch);
         let (q, p) = turned.shape();
         let entries = q * p - p * p.saturating_sub(1) / 2;
         let mut sums_of_sections = Sections {
@@ -256,7 +274,7 @@ impl<'a> Context<'a> {
         };
         for section in 0..sections {
             let range = range(stretch, section, sections);
-            let Section { scores, gram } = self.section(stretch, range, true);
+            let Section { scores, gram } = self.section(stretch, &nonzero, range, true);
             sums_of_sections
                 .scores
                 .set_column(section, &scores.row_sum_tr());
@@ -282,41 +300,72 @@ impl<'a> Context<'a> {
         sums_of_sections
     }
 
+    /// Places of the columns of each line of a stretch that are not zero.
+    fn nonzero(&self, stretch: &Stretch) -> Vec<Vec<usize>> {
+        let is_nonzero = |column: &[f64]| column.iter().any(|value| *value != 0.0);
+        let of_line = |line| {
+            let columns = self.columns(stretch, line).enumerate();
+            let nonzero = columns.filter(|(_, column)| is_nonzero(column));
+            nonzero.map(|(place, _)| place).collect()
+        };
+        (0..stretch.lines.len()).map(of_line).collect()
+    }
+
     /// Equations of a section of a stretch; with G if `wanted`.
-    fn section(&self, stretch: &Stretch, range: Range<usize>, wanted: bool) -> Section {
+    ///
+    /// `nonzero` are the places of each line's columns that are not zero.
+    fn section(
+        &self,
+        stretch: &Stretch,
+        nonzero: &[Vec<usize>],
+        range: Range<usize>,
+        wanted: bool,
+    ) -> Section {
         let (q, count) = (self.influence().ncols(), range.len());
-        let lines = stretch.lines.iter().zip(&self.estimation.weights);
-        // Weighted rows of all lines, stacked line by line.
-        let height = count * lines.len();
-        let mut rows = DMatrix::zeros(height, q);
-        let mut scores = DMatrix::zeros(count, q);
+        let mut section = Section {
+            scores: DMatrix::zeros(count, q),
+            gram: DMatrix::zeros(if wanted { q } else { 0 }, if wanted { q } else { 0 }),
+        };
         let mut residual = vec![0.0; count];
-        for (number, (line, weight)) in lines.enumerate() {
-            let own = number * count..(number + 1) * count;
-            let measured = &column(line, line.ncols() - 1)[range.clone()];
-            scale(&mut residual, measured, *weight);
-            for (place, from) in self.columns(stretch, number).enumerate() {
-                let to = &mut rows.as_mut_slice()[place * height..][own.clone()];
-                scale(to, &from[range.clone()], *weight);
-                // The columns come before the instruments.
-                if let Some(value) = self.estimation.values.get(place) {
-                    let left = residual.iter_mut().zip(to);
-                    left.for_each(|(left, x)| *left -= value * *x);
+        // Weighted rows of lines with the same columns, stacked line by line.
+        let mut stacked: Vec<f64> = Vec::new();
+        let lines = stretch.lines.iter().zip(&self.estimation.weights);
+        let lines: Vec<_> = lines.zip(nonzero).enumerate().collect();
+        for group in lines.chunk_by(|(_, (_, own)), (_, (_, next))| own == next) {
+            let places = group.first().map_or(&[][..], |(_, (_, own))| own);
+            let height = count * group.len();
+            stacked.clear();
+            stacked.resize(height * places.len(), 0.0);
+            for (inside, (number, ((line, weight), _))) in group.iter().enumerate() {
+                let own = inside * count..(inside + 1) * count;
+                let measured = &column(line, line.ncols() - 1)[range.clone()];
+                scale(&mut residual, measured, **weight);
+                let mut columns = self.columns(stretch, *number).enumerate();
+                for (to, place) in stacked.chunks_exact_mut(height).zip(places) {
+                    let from = columns.find(|(own, _)| own == place);
+                    let Some((_, from)) = from else { continue };
+                    let to = &mut to[own.clone()];
+                    scale(to, &from[range.clone()], **weight);
+                    // The columns come before the instruments.
+                    if let Some(value) = self.estimation.values.get(*place) {
+                        let left = residual.iter_mut().zip(to);
+                        left.for_each(|(left, x)| *left -= value * *x);
+                    }
+                }
+                for (from, place) in stacked.chunks_exact(height).zip(places) {
+                    let sums = &mut section.scores.as_mut_slice()[place * count..][..count];
+                    for ((sum, x), left) in sums.iter_mut().zip(&from[own.clone()]).zip(&residual) {
+                        *sum += x * left;
+                    }
                 }
             }
-            for (place, sums) in scores.as_mut_slice().chunks_exact_mut(count).enumerate() {
-                let from = &rows.as_slice()[place * height..][own.clone()];
-                for ((sum, x), left) in sums.iter_mut().zip(from).zip(&residual) {
-                    *sum += x * left;
-                }
+            if wanted {
+                let rows = DMatrix::from_vec(height, places.len(), std::mem::take(&mut stacked));
+                section.add(&square(&rows), places);
+                stacked = rows.data.into();
             }
         }
-        let gram = if wanted {
-            square(&rows)
-        } else {
-            DMatrix::zeros(0, 0)
-        };
-        Section { scores, gram }
+        section
     }
 
     /// Columns of the rows x of a line of a stretch.
@@ -327,29 +376,33 @@ impl<'a> Context<'a> {
         all.flat_map(|rows| self.selected.iter().map(|place| column(rows, *place)))
     }
 
-    /// R^-T (Σ φ_b X) Mᵀ of each cosine.
+    /// R^-T (Σ φ_b X) Mᵀ of all cosines side by side.
     ///
     /// `sections` holds the rows X of each section without their lower triangle.
-    fn turned(&self, sections: &DMatrix<f64>, waves: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
+    fn turned(&self, sections: &DMatrix<f64>, waves: &DMatrix<f64>) -> DMatrix<f64> {
         let (p, q) = self.influence().shape();
         let sums = sections * waves;
-        let turned = self.estimation.inverse.transpose();
-        let influence = self.influence().transpose();
-        let mut whole = DMatrix::zeros(p, q);
-        let sums = sums.column_iter().map(|sum| {
+        // Few products of large matrices take less time than many of small ones.
+        let mut below = DMatrix::zeros(p * waves.ncols(), q);
+        for (b, sum) in sums.column_iter().enumerate() {
             let mut values = sum.iter();
             for j in 0..q {
                 for i in 0..p.min(j + 1) {
                     let value = values.next().copied().unwrap_or_default();
-                    whole[(i, j)] = value;
+                    below[(b * p + i, j)] = value;
                     if j < p {
-                        whole[(j, i)] = value;
+                        below[(b * p + j, i)] = value;
                     }
                 }
             }
-            &turned * (&whole * &influence)
-        });
-        sums.collect()
+        }
+        let below = below * self.influence().transpose();
+        let mut beside = DMatrix::zeros(p, p * waves.ncols());
+        for b in 0..waves.ncols() {
+            let own = below.rows(b * p, p);
+            beside.columns_mut(b * p, p).copy_from(&own);
+        }
+        self.estimation.inverse.transpose() * beside
     }
 
     fn moments(
@@ -362,6 +415,8 @@ impl<'a> Context<'a> {
         let (sections, cosines) = waves.shape();
         let fitted = self.turned(&sums_of_sections.fitted, waves);
         let noisy = self.turned(&sums_of_sections.noisy, waves);
+        // Half of the symmetric correction: the quadratic term minus the mixed ones.
+        let correction = noise * &fitted * 0.5 - noisy;
         // φ_b φ_b' are cosines of the difference and of the sum.
         let both = DMatrix::from_fn(sections, 2 * cosines + 1, |k, m| cosine(m, k, sections));
         let spectra = &sums_of_sections.variances * both;
@@ -369,10 +424,10 @@ impl<'a> Context<'a> {
             .map(|i| {
                 let own = sums_of_sections.variances.row(i);
                 let spectrum = spectra.row(i);
-                let z = DMatrix::from_fn(p, cosines, |row, b| fitted[b][(row, i)]);
-                let y = DMatrix::from_fn(p, cosines, |row, b| noisy[b][(row, i)]);
-                // Half of the symmetric correction: the quadratic term minus the mixed ones.
-                let half = z.transpose() * (noise * &z * 0.5 - y);
+                let of = |all: &DMatrix<f64>| {
+                    DMatrix::from_fn(p, cosines, |row, b| all[(row, b * p + i)])
+                };
+                let half = of(&fitted).transpose() * of(&correction);
                 let c = DMatrix::from_fn(cosines, cosines, |a, b| {
                     spectrum[a.abs_diff(b)] + spectrum[a + b + 2] + (half[(a, b)] + half[(b, a)])
                 });

@@ -385,6 +385,7 @@ fn an_empty_identification_still_has_a_page() {
         motors: Vec::new(),
         functions_base: Vec::new(),
         tracking: Vec::new(),
+        timings: Vec::new(),
         online: Vec::new(),
         errors_in_regressor: Vec::new(),
         settings: settings(),

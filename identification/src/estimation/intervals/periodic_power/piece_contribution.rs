@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 
 use super::{
     power::{FORMS, Forms, Neighbours, Powers},
-    signs::{Drawn, weighted, weighted_residual},
+    signs::{Drawn, WeightedColumns, weighted, weighted_residual},
 };
 use crate::estimation::{
     correlation::View,
@@ -43,7 +43,9 @@ pub(super) struct PowerSums {
 ///
 /// Real and imaginary parts are parameters × frequencies, so each frequency is contiguous.
 struct Line {
-    /// Weighted columns.
+    /// Places of the columns that are not zero.
+    places: Vec<usize>,
+    /// These columns, weighted.
     columns: [DMatrix<f64>; 2],
     /// c of all parameters.
     influence: [DMatrix<f64>; 2],
@@ -51,16 +53,21 @@ struct Line {
 
 impl Line {
     /// Transforms weighted columns.
-    fn new(context: &Context<'_>, fourier: &Fourier, columns: &DMatrix<f64>) -> Self {
-        let spectra: Vec<Spectrum> = fourier.columns(columns);
+    fn new(context: &Context<'_>, fourier: &Fourier, own: WeightedColumns) -> Self {
+        let spectra: Vec<Spectrum> = fourier.columns(&own.columns);
+        let inverse = context.inverse.select_columns(&own.places);
         let bins = fourier.frequencies();
         let part = |of: fn(&Spectrum) -> &[f64]| {
             let parts: Vec<&[f64]> = spectra.iter().map(of).collect();
             DMatrix::from_fn(parts.len(), bins, |column, bin| parts[column][bin])
         };
         let columns = [part(|own| &own.real), part(|own| &own.imaginary)];
-        let influence = columns.each_ref().map(|part| &context.inverse * part);
-        Self { columns, influence }
+        let influence = columns.each_ref().map(|part| &inverse * part);
+        Self {
+            places: own.places,
+            columns,
+            influence,
+        }
     }
 
     /// c of all parameters at a frequency, real and imaginary parts.
@@ -74,9 +81,13 @@ impl Line {
     /// H_jk/N of two lines at a frequency, real and imaginary parts.
     fn leverage(&self, other: &Self, bin: usize, count: usize) -> [f64; 2] {
         let [a, b] = self.columns.each_ref().map(|part| part.column(bin));
-        let [c, d] = other.influence.each_ref().map(|part| part.column(bin));
-        let real = a.dot(&c) + b.dot(&d);
-        let imaginary = b.dot(&c) - a.dot(&d);
+        let [c, d] = other.at(bin);
+        let (mut real, mut imaginary) = (0.0, 0.0);
+        for ((a, b), place) in a.iter().zip(b.iter()).zip(&self.places) {
+            let (c, d) = (c[*place], d[*place]);
+            real += a * c + b * d;
+            imaginary += b * c - a * d;
+        }
         [real, imaginary].map(|part| part / count as f64)
     }
 }
@@ -96,7 +107,7 @@ pub(super) fn contributions<'a>(
         let residual = weighted_residual(context, &rows, weight);
         drawn.push(fourier.columns(&signs.residuals(&columns, &residual)));
         spectra.push(vec![fourier.single(&residual)]);
-        lines.push(Line::new(context, &fourier, &columns));
+        lines.push(Line::new(context, &fourier, columns));
     }
     let bins = fourier.frequencies();
     let leverages = leverages(&lines, count, bins);

@@ -16,6 +16,7 @@ use crate::{
     estimation::{
         correlation::{View, pieces, residual},
         intervals::scores::Context,
+        nonzero::{at, nonzero},
     },
     regression::system::System,
 };
@@ -63,9 +64,13 @@ impl Signs {
             let mut sum = none.clone();
             for (line, weight) in stretch.lines.iter().zip(&context.estimation.weights) {
                 let rows = line.rows(first, count);
-                let columns = weighted(context, &rows, *weight);
+                let WeightedColumns { places, columns } = weighted(context, &rows, *weight);
                 let signed = drawn.signed(&weighted_residual(context, &rows, *weight));
-                sum.gemm(1.0, &columns.transpose(), &signed, 1.0);
+                let products = columns.transpose() * signed;
+                for (place, own) in places.iter().zip(products.row_iter()) {
+                    let mut row = sum.row_mut(*place);
+                    row += own;
+                }
             }
             sum
         });
@@ -97,16 +102,26 @@ impl Drawn<'_> {
     }
 
     /// ρ* of all draws, for a line with these weighted columns and this residual.
-    pub(super) fn residuals(&self, columns: &DMatrix<f64>, residual: &[f64]) -> DMatrix<f64> {
+    pub(super) fn residuals(&self, own: &WeightedColumns, residual: &[f64]) -> DMatrix<f64> {
         let mut drawn = self.signed(residual);
-        drawn.gemm(-1.0, columns, self.fits, 1.0);
+        let fits = self.fits.select_rows(&own.places);
+        drawn.gemm(-1.0, &own.columns, &fits, 1.0);
         drawn
     }
 }
 
-/// λ w of the estimated columns.
-pub(super) fn weighted(context: &Context<'_>, rows: &View<'_>, weight: f64) -> DMatrix<f64> {
-    rows.select_columns(context.selected) * weight
+/// λ w of the estimated columns that are not zero in a line.
+pub(super) struct WeightedColumns {
+    /// Their places among the estimated columns.
+    pub(super) places: Vec<usize>,
+    pub(super) columns: DMatrix<f64>,
+}
+
+/// λ w of a line.
+pub(super) fn weighted(context: &Context<'_>, rows: &View<'_>, weight: f64) -> WeightedColumns {
+    let places = nonzero(rows, context.selected);
+    let columns = rows.select_columns(&at(context.selected, &places)) * weight;
+    WeightedColumns { places, columns }
 }
 
 /// λ ρ.
