@@ -27,6 +27,8 @@ ROBOTS = ["rx90", "kuka_lwr", "stanford", "dualv", "delta", "hexapod"]
 FUNCTIONS = [f"{of}_dynamics_by_{by}" for of in ("inverse", "forward") for by in ("displacement", "twist")]
 #: Effort of overact's search.
 EFFORT = os.environ.get("EFFORT", "thorough")
+#: Modes in which CasADi differentiates.
+MODES = os.environ.get("MODES", "forward,reverse,jacobian").split(",")
 
 
 @dataclass
@@ -174,7 +176,7 @@ def candidates(robot, task, names, homes, driven):
         if form.columns != "recursion":
             continue
         for kind in ("direct", "implicit"):
-            for mode in ("forward", "reverse", "jacobian"):
+            for mode in MODES:
                 algebra = Casadi()
                 try:
                     made = Derivative(robot, algebra, task, names, form, homes, driven, driven["dof"])

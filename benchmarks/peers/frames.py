@@ -17,6 +17,7 @@ import numpy as np
 from . import controller, derivatives, dynamics, ours, report
 from .algebra import ZERO, add, apply, cross, matrix, product, transpose, vector
 from .casadi_peer import Casadi, count
+from .closure import close
 from .description import load
 from .model import Angles, LegModel
 from .platform import Platform
@@ -101,6 +102,14 @@ class FrameJacobian:
         (leg,) = [one for one in whole.legs if one[0].leg.name == name]
         self.model, (_, _, self.full), *_ = leg
         self.body = int(joint) - 1
+        # The angles are those of the last leg: close this one again.
+        moving = [[j for j in leg.joints if j.kind != "fixed"] for leg in robot.legs]
+        place = [leg.name for leg in robot.legs].index(name)
+        start = sum(len(joints) for joints in moving[:place])
+        known = whole.angles.known.items()
+        whole.angles.known = {key: pair for key, pair in known if key[0][0][0] == "phi"}
+        own = homes[start : start + len(moving[place])]
+        close(whole.angles, algebra, whole.platform, self.model.leg, self.given["pose"], own)
 
     def rows(self, mode):
         if self.model is None:
@@ -147,7 +156,7 @@ def candidates(robot, task, homes, driven, body):
             continue
         for frame in frames:
             own = form if frame is None else type(form)(frame, form.merged, form.inverse, form.columns, form.staged)
-            for mode in ("geometric", "forward", "reverse", "jacobian"):
+            for mode in ("geometric", *derivatives.MODES):
                 algebra = Casadi()
                 try:
                     rows = FrameJacobian(robot, algebra, task, own, homes, driven, body).rows(mode)
