@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import blockwise, closed, controller, derivatives, identification, logs, ours, pinocchio_peer, report, table, timing
+from . import blockwise, closed, controller, derivatives, frames, identification, logs, ours, pinocchio_peer, report, table, timing
 from .description import load
 from .ours import Function
 from .peers import Model, check, models
@@ -80,6 +80,7 @@ def main():
     parser.add_argument(
         "--derivatives", action="store_true", help="only derivatives of the dynamics; counts only"
     )
+    parser.add_argument("--frames", action="store_true", help="only Jacobians of frames; counts only")
     parser.add_argument("--no-times", action="store_true", help="count only")
     parser.add_argument("--core", type=int, default=0, help="the core on which all programs are timed")
     parser.add_argument("--rounds", type=int, default=15, help="turns of every program")
@@ -110,6 +111,9 @@ def main():
         return
     if arguments.derivatives:
         print(derivatives.measure(arguments.only, arguments.samples))
+        return
+    if arguments.frames:
+        print(frames.measure(arguments.only, arguments.samples))
         return
     if arguments.dynamics:
         timed = not arguments.no_times

@@ -27,6 +27,8 @@ ROBOTS = ["rx90", "kuka_lwr", "stanford", "dualv", "delta", "hexapod"]
 FUNCTIONS = [f"{of}_dynamics_by_{by}" for of in ("inverse", "forward") for by in ("displacement", "twist")]
 #: Effort of overact's search.
 EFFORT = os.environ.get("EFFORT", "thorough")
+#: Modes in which CasADi differentiates.
+MODES = os.environ.get("MODES", "forward,reverse,jacobian").split(",")
 
 
 @dataclass
@@ -174,7 +176,7 @@ def candidates(robot, task, names, homes, driven):
         if form.columns != "recursion":
             continue
         for kind in ("direct", "implicit"):
-            for mode in ("forward", "reverse", "jacobian"):
+            for mode in MODES:
                 algebra = Casadi()
                 try:
                     made = Derivative(robot, algebra, task, names, form, homes, driven, driven["dof"])
@@ -227,14 +229,19 @@ def tasks(robot, document, is_tree):
 
 
 def own_counts(robot):
-    """overact's counts after the thorough search, from the documentation of the generated code."""
+    """overact's counts of all derivatives of a robot."""
+    return counts_of(ours.description(robot), FUNCTIONS)
+
+
+def counts_of(description, names):
+    """overact's counts of functions, from the documentation of the generated code."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "robot.rs"
-        call = [ours.BINARY, "generate", ours.description(robot), "-o", path, "--effort", EFFORT]
-        call += ["--functions", ",".join(FUNCTIONS)]
+        call = [ours.BINARY, "generate", description, "-o", path, "--effort", EFFORT]
+        call += ["--functions", ",".join(names)]
         subprocess.run([str(part) for part in call], capture_output=True, text=True, check=True)
         text = path.read_text()
-    return {name: documented(text[: text.index(f"pub fn {name}(")]) for name in FUNCTIONS}
+    return {name: documented(text[: text.index(f"pub fn {name}(")]) for name in names}
 
 
 def documented(text):
@@ -245,7 +252,7 @@ def documented(text):
         found = re.search(rf"(\d+) {what}", line)
         return int(found.group(1)) if found else 0
 
-    kinds = ["addition", "multiplication", "division", "square root", "sine-cosine pair", "arc tangent"]
+    kinds = ["addition", "multiplication", "division", "square root", "trigonometric pair", "arc tangent"]
     return Count(*[number(kind) for kind in kinds])
 
 

@@ -7,10 +7,12 @@
 >>> result.recommended["zz_platformR"].interval_95
 
 `Robot` has the functions of the robot, which take NumPy arrays. `Robot.simulate` simulates its virtual
-experiment, `identify` estimates its parameters. Errors are raised as one of the exceptions below, all of
+experiment, `identify` estimates its parameters, `online` does so while data arrive. `Transmission` converts
+torques, gains and limits between motors and joints. Errors are raised as one of the exceptions below, all of
 which are an `OveractError`. All numbers are in SI units: m, rad, s, N, N m, kg.
 """
 
+from . import online
 from ._errors import (
     DataError,
     DescriptionError,
@@ -27,6 +29,7 @@ from ._result import Estimate, Identification, ParameterEstimate, Verdict
 from ._robot import Robot
 from ._run import Run
 from ._symbolic import Symbolic
+from ._transmission import Transmission
 
 __all__ = [
     "BaseParameter",
@@ -46,8 +49,10 @@ __all__ = [
     "Robot",
     "Run",
     "Symbolic",
+    "Transmission",
     "UnknownNameError",
     "Verdict",
     "__version__",
     "identify",
+    "online",
 ]

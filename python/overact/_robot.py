@@ -15,6 +15,7 @@ from ._model import BaseParameter, Cost, Parameter
 from ._overact import Function, Handle
 from ._run import Run
 from ._symbolic import Symbolic
+from ._transmission import Transmission, bias, curvature
 
 if TYPE_CHECKING:
     from ._result import Identification
@@ -219,6 +220,34 @@ class Robot(Functions):
             Poses (m, rad), one for each sample.
         """
         return self._handle.pose_from_actuators(actuators, start, out)
+
+    def transmission(self, pose: Any) -> Transmission:
+        """The transmission between motors and joints at a pose, or at many: torques, gains and limits.
+
+        Args:
+            pose: Pose (m, rad); joint positions of a robot without a platform.
+
+        Raises:
+            EvaluationError: A pose at which the motors do not determine all joints.
+        """
+        if "inverse_jacobian" not in self.functions:
+            raise ValueError(f"{self.name} has no `inverse_jacobian`: its motors are on its coordinates")
+        return Transmission(self.inverse_jacobian(pose))
+
+    def transmission_bias(self, pose: Any, twist: Any) -> np.ndarray:
+        """J̇ v: accelerations of the motors while the velocities of the joints are constant.
+
+        `Transmission` converts accelerations with it.
+        """
+        return bias(self, pose, twist)
+
+    def curvature(self, pose: Any) -> np.ndarray:
+        """Derivative of the transmission's Jacobian at a pose, n x r x r; exact.
+
+        Element (a, i, j) is the second derivative of the position of motor a. For several rotations in space it
+        is the symmetric part.
+        """
+        return curvature(self, pose)
 
     def cost(self, function: str, effort: str = "quick") -> Cost:
         """Cost of a function in generated code.

@@ -1,6 +1,6 @@
 //! Converts errors to exceptions of the package, which are classes of `overact._errors`.
 
-use overact::SampleError;
+use overact::{SampleError, online};
 use overact_cli::failure::Failure;
 use overact_robot::{Column, Error, Problem};
 use pyo3::{call::PyCallArgs, exceptions::PyValueError, prelude::*};
@@ -50,6 +50,34 @@ pub(crate) fn of_sample(py: Python<'_>, function: &str, error: &SampleError) -> 
         "EvaluationError",
         (message, error.sample, error.error.to_string()),
     )
+}
+
+/// Exception for an input or state of an online estimator.
+///
+/// `sample` is that of an update.
+pub(crate) fn of_online(
+    py: Python<'_>,
+    what: &str,
+    sample: Option<usize>,
+    error: online::Error,
+) -> PyErr {
+    let reason = error.to_string();
+    let is_without_value = matches!(
+        error,
+        online::Error::NotDetermined | online::Error::Overflow
+    );
+    match sample {
+        Some(sample) => {
+            let message = format!("{what}: sample {sample}: {reason}");
+            raised(py, "EvaluationError", (message, sample, reason))
+        }
+        None if is_without_value => raised(
+            py,
+            "EvaluationError",
+            (format!("{what}: {reason}"), 0, reason),
+        ),
+        None => raised(py, "DataError", (format!("{what}: {reason}"),)),
+    }
 }
 
 fn is_of_description(error: &Error) -> bool {

@@ -10,6 +10,7 @@
 //! - `robot`: a description as an object;
 //! - `progress`: progress of long work, reported to a callable;
 //! - `logs`, `simulation`, `identification`: runs in, records and results out;
+//! - `online`: estimators for data as they arrive;
 //! - `arrow`: columns of tables with Arrow's C interface;
 //! - `command`: the command line, which is part of the package.
 
@@ -21,6 +22,7 @@ mod function;
 mod function_form;
 mod identification;
 mod logs;
+mod online;
 mod operations;
 mod progress;
 mod robot;
@@ -35,6 +37,11 @@ fn _overact(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<robot::Handle>()?;
     module.add_class::<function::Function>()?;
     module.add_class::<identification::Identified>()?;
+    module.add_class::<online::OnlineFilter>()?;
+    module.add_class::<online::OnlinePayload>()?;
+    module.add_class::<online::OnlineChangeTest>()?;
+    module.add_class::<online::OnlineWhitening>()?;
+    module.add_class::<online::OnlineSignals>()?;
     module.add_function(wrap_pyfunction!(arrow::columns, module)?)?;
     module.add_function(wrap_pyfunction!(command::command, module)?)?;
     module.add_function(wrap_pyfunction!(function::known_functions, module)?)

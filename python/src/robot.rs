@@ -305,6 +305,7 @@ fn info(robot: &Robot) -> serde_json::Value {
         "legs": info.legs,
         "actuators": info.actuators,
         "actuator_is_revolute": info.actuator_is_revolute,
+        "actuator_joints": actuator_joints(robot),
         "coordinates": info.coordinates,
         "pose_coordinates": if model.is_tree() { mechanism.coordinates() } else { mechanism.pose_coordinates() },
         "home_pose": info.home_pose,
@@ -318,6 +319,18 @@ fn info(robot: &Robot) -> serde_json::Value {
         "held_out": robot.held_out(),
         "true_values": robot.true_values(),
     })
+}
+
+/// Joints that each actuator drives, with factors.
+fn actuator_joints(robot: &Robot) -> Vec<Vec<(usize, f64)>> {
+    let model = robot.model();
+    let joints = model.info().actuated_joints.iter().enumerate();
+    joints
+        .map(|(actuator, &joint)| match model.actuator_terms(actuator) {
+            [] => vec![(joint, 1.0)],
+            terms => terms.to_vec(),
+        })
+        .collect()
 }
 
 /// Columns of a log, including columns in expressions.

@@ -222,6 +222,30 @@ impl<const P: usize, T: Float> Filter<P, T> {
         })
     }
 
+    /// Adds the rows of one sample, whose number is known at run time, and writes the innovations.
+    ///
+    /// # Errors
+    /// As [`update_block`](Self::update_block); [`Error::Length`] of slices of different lengths.
+    ///
+    /// ```
+    /// use overact::online::{Filter, Innovation};
+    ///
+    /// let mut filter = Filter::<1>::from_standard_deviations(&[0.0], &[10.0])?;
+    /// let mut innovations = [Innovation::default(); 2];
+    /// filter.update_slices(&[[1.0], [2.0]], &[3.0, 6.0], &[0.1, 0.1], &mut innovations)?;
+    /// assert!((filter.estimate()?[0] - 3.0_f64).abs() < 1e-3);
+    /// # Ok::<(), overact::online::Error>(())
+    /// ```
+    pub fn update_slices(
+        &mut self,
+        rows: &[[T; P]],
+        y: &[T],
+        sigma: &[T],
+        innovations: &mut [Innovation<T>],
+    ) -> Result<(), Error> {
+        self.change(|slices| slices.update_block(rows.as_flattened(), y, sigma, innovations))
+    }
+
     /// Multiplies all information by a factor in (0, 1], for example after a detected change.
     ///
     /// The estimate stays the same. Standard deviations grow by 1/√factor, up to those of the
@@ -240,9 +264,7 @@ impl<const P: usize, T: Float> Filter<P, T> {
     /// # Ok::<(), overact::online::Error>(())
     /// ```
     pub fn discount(&mut self, factor: T) -> Result<(), Error> {
-        Forgetting::Exponential(factor).check()?;
-        self.change(|slices| slices.discount(factor));
-        Ok(())
+        self.change(|slices| slices.discount(factor))
     }
 
     /// The estimate χ = R⁻¹ z.

@@ -51,6 +51,6 @@ pub use filter::Filter;
 pub use forgetting::Forgetting;
 pub use innovation::Innovation;
 pub use payload::{Payload, PayloadEstimator, PayloadSize};
-pub use slices::SliceFilter;
+pub use slices::{FilterState, SliceFilter};
 pub use state_variable::{Signal, StateVariableFilter};
 pub use whitening::Whitening;

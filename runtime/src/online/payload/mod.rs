@@ -174,6 +174,21 @@ impl<const P: usize, T: Float> PayloadEstimator<P, T> {
         self.filter.update_block(rows, residuals, sigma)
     }
 
+    /// Adds a sample whose number of torques is known at run time, and writes the innovations.
+    ///
+    /// # Errors
+    /// As [`Filter::update_slices`]; the state is then unchanged.
+    pub fn update_slices(
+        &mut self,
+        rows: &[[T; P]],
+        residuals: &[T],
+        sigma: &[T],
+        innovations: &mut [Innovation<T>],
+    ) -> Result<(), Error> {
+        self.filter
+            .update_slices(rows, residuals, sigma, innovations)
+    }
+
     /// Multiplies the information by a factor, for example after a detected change.
     ///
     /// # Errors

@@ -1,5 +1,7 @@
 //! The information filter on slices of the caller.
 
+mod outputs;
+
 use super::{Error, Forgetting, Innovation, bounds, triangle};
 use crate::float::Float;
 
@@ -32,6 +34,10 @@ impl<T: Float> Status<T> {
         (self.rows > T::of(0.5)).then(|| (self.squares / self.rows).sqrt())
     }
 }
+
+/// Numbers of a [`SliceFilter`] that are not in its slices, to continue it later.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FilterState<T = f64>(Status<T>);
 
 /// Square-root information filter in slices, for a number of parameters known at run time.
 ///
@@ -79,16 +85,86 @@ impl<'a, T: Float> SliceFilter<'a, T> {
     /// # Errors
     /// [`Error::Length`] of slices that do not belong to one number of parameters.
     pub fn without_prior(factor: &'a mut [T], vectors: &'a mut [T]) -> Result<Self, Error> {
+        Self::check_slices(factor, vectors)?;
         let parameters = vectors.len() / 4;
-        let [squared, all] = Self::lengths(parameters);
+        factor.fill(T::ZERO);
+        vectors.fill(T::ZERO);
+        Self::split(factor, vectors, Status::new(parameters == 0))
+    }
+
+    /// A filter with a prior estimate and a square root S of its information, SᵀS = Λ, row by row.
+    ///
+    /// The slices are overwritten.
+    ///
+    /// # Errors
+    /// [`Error::Length`], or as [`Filter::new`](super::Filter::new).
+    ///
+    /// ```
+    /// use overact::online::SliceFilter;
+    ///
+    /// let (mut factor, mut vectors) = (vec![0.0; 1], vec![0.0; 4]);
+    /// let mut filter = SliceFilter::with_prior(&mut factor, &mut vectors, &[3.0], &[2.0])?;
+    /// let mut deviation = [0.0_f64];
+    /// filter.standard_deviations(&mut deviation)?;
+    /// assert_eq!(deviation, [0.5]);
+    /// # Ok::<(), overact::online::Error>(())
+    /// ```
+    pub fn with_prior(
+        factor: &'a mut [T],
+        vectors: &'a mut [T],
+        prior: &[T],
+        square_root_information: &[T],
+    ) -> Result<Self, Error> {
+        let mut filter = Self::without_prior(factor, vectors)?;
+        filter.check_length(prior)?;
+        let (expected, found) = (filter.factor.len(), square_root_information.len());
+        if expected != found {
+            return Err(Error::Length { expected, found });
+        }
+        filter.add_prior(prior, square_root_information)?;
+        Ok(filter)
+    }
+
+    /// Continues a filter with its slices and [`state`](Self::state), which must not have changed.
+    ///
+    /// # Errors
+    /// [`Error::Length`] of slices that do not belong to one number of parameters.
+    ///
+    /// ```
+    /// use overact::online::SliceFilter;
+    ///
+    /// let (mut factor, mut vectors) = (vec![0.0; 1], vec![0.0; 4]);
+    /// let state = SliceFilter::without_prior(&mut factor, &mut vectors)?.state();
+    /// let mut filter = SliceFilter::resume(&mut factor, &mut vectors, state)?;
+    /// filter.update(&[2.0], 6.0, 1.0)?;
+    /// let mut estimate = [0.0];
+    /// filter.estimate(&mut estimate)?;
+    /// assert_eq!(estimate, [3.0]);
+    /// # Ok::<(), overact::online::Error>(())
+    /// ```
+    pub fn resume(
+        factor: &'a mut [T],
+        vectors: &'a mut [T],
+        state: FilterState<T>,
+    ) -> Result<Self, Error> {
+        Self::check_slices(factor, vectors)?;
+        Self::split(factor, vectors, state.0)
+    }
+
+    /// The numbers that are not in the slices.
+    #[must_use]
+    pub const fn state(&self) -> FilterState<T> {
+        FilterState(self.status)
+    }
+
+    fn check_slices(factor: &[T], vectors: &[T]) -> Result<(), Error> {
+        let [squared, all] = Self::lengths(vectors.len() / 4);
         for (expected, found) in [(all, vectors.len()), (squared, factor.len())] {
             if expected != found {
                 return Err(Error::Length { expected, found });
             }
         }
-        factor.fill(T::ZERO);
-        vectors.fill(T::ZERO);
-        Self::split(factor, vectors, Status::new(parameters == 0))
+        Ok(())
     }
 
     /// A filter with numbers of an earlier one.
@@ -242,14 +318,26 @@ impl<'a, T: Float> SliceFilter<'a, T> {
     /// Forgets once before the rows of an update.
     pub(super) fn begin(&mut self) {
         if let Forgetting::Exponential(factor) = self.status.forgetting {
-            self.discount(factor);
+            self.forget(factor);
         }
     }
 
-    /// Multiplies all information by a factor in (0, 1]. The estimate stays the same.
+    /// Multiplies all information by a factor in (0, 1], as [`Filter::discount`] does.
+    ///
+    /// [`Filter::discount`]: super::Filter::discount
+    ///
+    /// # Errors
+    /// [`Error::Setting`] for another factor.
+    pub fn discount(&mut self, factor: T) -> Result<(), Error> {
+        Forgetting::Exponential(factor).check()?;
+        self.forget(factor);
+        Ok(())
+    }
+
+    /// Multiplies all information by a checked factor. The estimate stays the same.
     ///
     /// With a factor of 1 nothing is forgotten, as without a rule.
-    pub(super) fn discount(&mut self, factor: T) {
+    fn forget(&mut self, factor: T) {
         if factor >= T::of(1.0) {
             return;
         }
@@ -334,79 +422,6 @@ impl<'a, T: Float> SliceFilter<'a, T> {
                 *own = added;
             }
             triangle::rotate_in(self.factor, self.side, self.row, side, place);
-        }
-    }
-
-    /// Writes the estimate χ = R⁻¹ z.
-    ///
-    /// # Errors
-    /// [`Error::NotDetermined`] before R is regular, [`Error::Overflow`], or [`Error::Length`].
-    pub fn estimate(&self, estimate: &mut [T]) -> Result<(), Error> {
-        self.check_output(estimate)?;
-        if triangle::solve(self.factor, self.side, estimate) {
-            Ok(())
-        } else {
-            Err(Error::Overflow)
-        }
-    }
-
-    /// Writes the standard deviations, the roots of the diagonal of R⁻¹R⁻ᵀ.
-    ///
-    /// # Errors
-    /// As [`estimate`](Self::estimate).
-    pub fn standard_deviations(&mut self, deviations: &mut [T]) -> Result<(), Error> {
-        self.check_output(deviations)?;
-        if triangle::standard_deviations(self.factor, self.work, deviations) {
-            Ok(())
-        } else {
-            Err(Error::Overflow)
-        }
-    }
-
-    /// Writes the estimates and standard deviations of the parameters that the rows determine.
-    ///
-    /// The others are NaN. A parameter counts as determined if its estimate depends on no
-    /// undetermined one, in the order of the columns. So put columns that are excited late, such as
-    /// those of a payload, last.
-    ///
-    /// # Errors
-    /// [`Error::Length`].
-    ///
-    /// ```
-    /// use overact::online::SliceFilter;
-    ///
-    /// let (mut factor, mut vectors) = (vec![0.0; 4], vec![0.0; 8]);
-    /// let mut filter = SliceFilter::without_prior(&mut factor, &mut vectors)?;
-    /// filter.update(&[2.0, 0.0], 6.0, 1.0)?;
-    /// let (mut values, mut deviations) = ([0.0_f64; 2], [0.0_f64; 2]);
-    /// filter.determined(&mut values, &mut deviations)?;
-    /// assert_eq!((values[0], deviations[0]), (3.0, 0.5));
-    /// assert!(values[1].is_nan() && deviations[1].is_nan());
-    /// # Ok::<(), overact::online::Error>(())
-    /// ```
-    pub fn determined(&mut self, values: &mut [T], deviations: &mut [T]) -> Result<(), Error> {
-        self.check_length(values)?;
-        self.check_length(deviations)?;
-        triangle::solve_determined(self.factor, self.side, values);
-        for (place, (value, deviation)) in values.iter_mut().zip(deviations).enumerate() {
-            *deviation = T::NAN;
-            if !value.is_finite() {
-                *value = T::NAN;
-            } else if triangle::inverse_row(self.factor, place, self.work) {
-                let squares = self.work.iter().skip(place).map(|u| *u * *u);
-                *deviation = squares.sum::<T>().sqrt();
-            }
-        }
-        Ok(())
-    }
-
-    /// Checks that there is an estimate and that it has the length of a slice.
-    fn check_output(&self, output: &[T]) -> Result<(), Error> {
-        self.check_length(output)?;
-        if self.status.is_regular {
-            Ok(())
-        } else {
-            Err(Error::NotDetermined)
         }
     }
 
