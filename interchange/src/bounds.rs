@@ -39,7 +39,11 @@ const CLOSURES: &[&str] = &[
 /// This runs before the elements are compared with each other.
 pub(crate) fn check_elements(files: &Files, root: &Element) -> Option<()> {
     let limits: [(&str, &[&str], usize); 4] = [
-        ("joints", &["joint", "freejoint"], MOST_JOINT_ELEMENTS),
+        (
+            "elements of joints",
+            &["joint", "freejoint"],
+            MOST_JOINT_ELEMENTS,
+        ),
         ("bodies", &["body", "link"], MOST_BODY_ELEMENTS),
         ("frames", &["frame"], MOST_FRAME_ELEMENTS),
         ("loop closures", CLOSURES, MOST_CLOSURE_ELEMENTS),

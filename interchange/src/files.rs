@@ -377,7 +377,11 @@ fn read(path: &Path, may_be_pipe: bool, most: u64) -> io::Result<String> {
 /// Reads a text; an error if it has more than `most` bytes.
 fn bounded(input: impl Read, most: u64) -> io::Result<String> {
     let mut text = String::new();
-    input.take(most + 1).read_to_string(&mut text)?;
+    let read = input.take(most + 1).read_to_string(&mut text);
+    read.map_err(|error| match error.kind() {
+        io::ErrorKind::InvalidData => io::Error::other("it is not text in UTF-8: save it as UTF-8"),
+        _ => error,
+    })?;
     if text.len() as u64 > most {
         let message = format!("the files of a robot may have {MOST_BYTES} bytes together");
         return Err(io::Error::other(message));

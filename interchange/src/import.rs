@@ -160,6 +160,7 @@ fn misfits(files: &Files, model: &Model) -> Vec<ClosureMisfit> {
 pub(crate) fn model(files: &Files, path: &Path, options: &Options) -> Option<(Model, Format)> {
     let file = files.read(path, None)?;
     let (mut model, format) = read(files, file, options)?;
+    check_options(files, format, options)?;
     bounds::check(files, &model)?;
     choose(files, &mut model, options)?;
     simple::drop_closures_on_one_body(files, &mut model);
@@ -238,6 +239,26 @@ impl<'m> Robot<'m> {
             options,
         )
     }
+}
+
+/// Rejects options of other formats, which would have no effect; `None` after an error.
+fn check_options(files: &Files, format: Format, options: &Options) -> Option<()> {
+    let foreign = [
+        (
+            "--value",
+            !options.values.is_empty(),
+            Format::Par,
+            ".par files",
+        ),
+        ("--model", options.model.is_some(), Format::Sdf, "SDFormat"),
+    ];
+    for (option, is_given, own, name) in foreign {
+        if is_given && format != own {
+            let message = format!("`{option}` is an option for {name} only");
+            files.refuse(message, "leave it out");
+        }
+    }
+    files.is_clean().then_some(())
 }
 
 fn read(files: &Files, file: usize, options: &Options) -> Option<(Model, Format)> {

@@ -194,6 +194,25 @@ fn a_point_closure_in_a_planar_loop_is_a_pin() {
 }
 
 #[test]
+fn a_point_closure_is_a_pin_in_a_planar_loop_next_to_a_spatial_one() {
+    // The rod with two balls moves in space and drives the same crank.
+    let text = format!(
+        r#"<mujoco model="bar"><worldbody><body name="crank">{MASS}<joint name="crank" axis="0 1 0"/>
+ <body name="coupler" pos="0 0 .1">{MASS}<joint name="coupler" axis="0 1 0"/>
+  <body name="rocker" pos=".3 0 .1">{MASS}<joint name="rocker" axis="0 1 0"/></body></body>
+ <body name="rod" pos="0 .1 .1">{MASS}<joint name="ball" type="ball"/></body></body>
+<body name="lever" pos="-.2 .3 .1">{MASS}<joint name="lever" axis="1 0 1"/></body></worldbody>
+<equality><connect name="ground" body1="rocker" anchor="0 0 -.2"/><connect name="end" body1="rod" body2="lever" anchor="-.2 .2 .15"/></equality>
+<actuator><motor joint="crank"/></actuator></mujoco>"#
+    );
+    let (_, checked) = accepted(&text);
+    let legs = checked.mechanism.legs.iter();
+    let joints = legs.flat_map(|leg| &leg.joints);
+    let closing = joints.filter(|joint| joint.name.starts_with("ground"));
+    assert!(closing.count() <= 1);
+}
+
+#[test]
 fn two_point_closures_form_a_pin_and_three_a_rigid_joint() {
     let bar = |points: &[[f64; 3]], error: f64| {
         let (mut first, mut second, mut closures) = (String::new(), String::new(), String::new());

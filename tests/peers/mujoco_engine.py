@@ -1,5 +1,7 @@
 """MuJoCo as the engine of an imported robot."""
 
+import itertools
+
 import mujoco
 import numpy as np
 from description import relative_turn, with_followers
@@ -69,7 +71,12 @@ class Engine:
     def stages(self, body):
         """Bodies after each joint of a body of the engine, as import names them."""
         name, count = self.model.body(body).name, self.model.body_jntnum[body]
-        return [f"{name}_{at + 1}" for at in range(count - 1)] + [name]
+        return [self.unused(f"{name}_{at + 1}") for at in range(count - 1)] + [name]
+
+    def unused(self, name):
+        """The name, with a number if a body of the file has it."""
+        free = (f"{name}_{number}" for number in itertools.count(2))
+        return next(free_name for free_name in itertools.chain([name], free) if self.body(free_name) < 0)
 
     def stages_at(self, body, position):
         """Name and rotation after each joint of a body."""

@@ -2,7 +2,7 @@
 
 use super::{
     BOOLEAN_OR_AUTO, Reader, Sites, adjust::SpringDamper, compensation::Compensation,
-    defaults::MAIN, inertia,
+    defaults::MAIN, inertia, names::TakenNames,
 };
 use crate::{
     files::Files,
@@ -22,10 +22,12 @@ pub(super) fn read(
 ) -> (Vec<SpringDamper>, Compensation) {
     let mut springs = Vec::new();
     let mut compensation = Compensation::default();
+    let mut taken = TakenNames::of_file(root);
     for world in root.all("worldbody") {
         let class = world.get("childclass").unwrap_or(MAIN).to_owned();
         let mut tree = Tree {
             names: model.bodies.iter().map(|body| body.name.clone()).collect(),
+            taken: &mut taken,
             model: &mut *model,
             sites: &mut *sites,
             springs: &mut springs,
@@ -40,6 +42,7 @@ pub(super) fn read(
 struct Tree<'t> {
     /// Names of the bodies so far.
     names: BTreeSet<String>,
+    taken: &'t mut TakenNames,
     model: &'t mut Model,
     sites: &'t mut Sites,
     springs: &'t mut Vec<SpringDamper>,
@@ -85,9 +88,10 @@ fn body(
 ) {
     let files = reader.files;
     let count = tree.model.bodies.len();
-    let name = element
-        .get("name")
-        .map_or_else(|| format!("body{count}"), str::to_owned);
+    let name = match element.get("name") {
+        Some(name) => name.to_owned(),
+        None => tree.taken.body(&format!("body{count}")),
+    };
     if !tree.names.insert(name.clone()) {
         let message = format!("two bodies have the name `{name}`");
         files.report(&element.place, message, "give each body a name of its own");
@@ -104,12 +108,13 @@ fn body(
             tree.compensation.joint(files, own);
         }
         if is_free(own) && reader.has_closures && !reader.options.fix_base {
-            parent = carriers(own, parent, placement, model);
+            let joint = free_name(own, tree.taken, model);
+            parent = carriers(own, &joint, parent, placement, model);
             placement = Pose::identity();
-            push_free(own, &name, element, parent, model);
+            push_free(own, &joint, &name, element, parent, model);
             continue;
         }
-        let Some(mut joint) = joint(reader, own, model) else {
+        let Some(mut joint) = joint(reader, own, tree.taken, model) else {
             continue;
         };
         joint.at = offset * joint.at;
@@ -130,7 +135,7 @@ fn body(
             name: if is_last {
                 name.clone()
             } else {
-                format!("{name}_{}", at + 1)
+                tree.taken.body(&format!("{name}_{}", at + 1))
             },
             parent,
             placement,
@@ -187,15 +192,22 @@ fn is_free(joint: &Element) -> bool {
     joint.name == "freejoint" || joint.get("type") == Some("free")
 }
 
-/// Name of a free joint.
-fn free_name(joint: &Element, model: &Model) -> String {
-    let given = joint.get("name").map(str::to_owned);
-    given.unwrap_or_else(|| format!("joint{}", model.joints.len() + 1))
+/// Name of a joint.
+fn free_name(joint: &Element, taken: &mut TakenNames, model: &Model) -> String {
+    match joint.get("name") {
+        Some(name) => name.to_owned(),
+        None => taken.joint(&format!("joint{}", model.joints.len() + 1)),
+    }
 }
 
 /// Adds massless bodies that translate along x, y and z, and returns the last one.
-fn carriers(joint: &Element, parent: usize, placement: Pose, model: &mut Model) -> usize {
-    let name = free_name(joint, model);
+fn carriers(
+    joint: &Element,
+    name: &str,
+    parent: usize,
+    placement: Pose,
+    model: &mut Model,
+) -> usize {
     let (mut parent, mut placement) = (parent, placement);
     for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
         model.joints.push(Joint {
@@ -223,14 +235,17 @@ fn carriers(joint: &Element, parent: usize, placement: Pose, model: &mut Model) 
 }
 
 /// Adds a body that rotates freely about its parent's origin.
-fn push_free(joint: &Element, name: &str, element: &Element, parent: usize, model: &mut Model) {
+fn push_free(
+    joint: &Element,
+    joint_name: &str,
+    name: &str,
+    element: &Element,
+    parent: usize,
+    model: &mut Model,
+) {
     model.joints.push(Joint {
         is_virtual: true,
-        ..Joint::new(
-            &free_name(joint, model),
-            JointType::Ball,
-            joint.place.clone(),
-        )
+        ..Joint::new(joint_name, JointType::Ball, joint.place.clone())
     });
     model.bodies.push(Body {
         name: name.to_owned(),
@@ -268,11 +283,14 @@ fn gather_joints(
     }
 }
 
-fn joint(reader: &Reader<'_>, element: &Element, model: &mut Model) -> Option<Joint> {
+fn joint(
+    reader: &Reader<'_>,
+    element: &Element,
+    taken: &mut TakenNames,
+    model: &mut Model,
+) -> Option<Joint> {
     let files = reader.files;
-    let name = element
-        .get("name")
-        .map_or_else(|| format!("joint{}", model.joints.len() + 1), str::to_owned);
+    let name = free_name(element, taken, model);
     let kind = if element.name == "freejoint" {
         Some("free")
     } else {

@@ -1,5 +1,6 @@
 //! Default classes: attribute values for elements that do not set them.
 
+use super::ROTATIONS;
 use crate::{
     files::{Files, Place},
     xml::Element,
@@ -37,10 +38,15 @@ impl Defaults {
         };
         own.classes.insert(MAIN.to_owned(), Class::new());
         for top in root.all("default") {
-            // Several top-level sections extend the same class.
-            let name = top.get("class").unwrap_or(MAIN).to_owned();
-            let before = own.classes.get(&name).cloned().unwrap_or_default();
-            own.add(files, top, &name, before);
+            // Several outermost sections extend the same class.
+            if let Some((name, place)) = top.attribute("class").filter(|(name, _)| *name != MAIN) {
+                let message = format!("the outermost default class is `main`, not `{name}`");
+                let help = "put the class into another <default>, or remove its name";
+                files.report(place, message, help);
+                continue;
+            }
+            let before = own.classes.get(MAIN).cloned().unwrap_or_default();
+            own.add(files, top, MAIN, before);
         }
         files.is_clean().then_some(own)
     }
@@ -67,6 +73,10 @@ impl Defaults {
         self.classes.insert(name.to_owned(), class.clone());
         for inner in element.all("default") {
             match inner.get("class") {
+                Some(own) if self.classes.contains_key(own) => {
+                    let message = format!("two default classes have the name `{own}`");
+                    files.report(&inner.place, message, "give each class a name of its own");
+                }
                 Some(own) => self.add(files, inner, own, class.clone()),
                 None => {
                     let help = "write class=\"…\" of every <default> inside another";
@@ -99,11 +109,10 @@ impl Defaults {
             files.report(place, format!("there is no default class `{name}`"), help);
             return whole;
         };
-        let rotations = ["quat", "axisangle", "xyaxes", "zaxis", "euler"];
         let mut own = element.attributes.iter();
-        let is_turned = own.any(|(key, ..)| rotations.contains(&key.as_str()));
+        let is_turned = own.any(|(key, ..)| ROTATIONS.contains(&key.as_str()));
         for ((own, key), (value, place)) in class {
-            let is_other_rotation = is_turned && rotations.contains(&key.as_str());
+            let is_other_rotation = is_turned && ROTATIONS.contains(&key.as_str());
             if own == tag && element.get(key).is_none() && !is_other_rotation {
                 whole
                     .attributes

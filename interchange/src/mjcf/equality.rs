@@ -139,7 +139,8 @@ fn closure_kind(
     let bodies = [body("body1")?, body("body2")?];
     let relative = poses[bodies[1]].inv_mul(&poses[bodies[0]]);
     if is_point {
-        let anchor = Point3::from(element.numbers(files, "anchor").unwrap_or_default());
+        element.required(files, "anchor")?;
+        let anchor = Point3::from(element.numbers(files, "anchor")?);
         return Some(ClosureKind::Point {
             bodies,
             at: [anchor, relative * anchor],

@@ -42,6 +42,19 @@ struct Folder {
 }
 
 impl Folder {
+    /// Path of an included file.
+    ///
+    /// As in MuJoCo it is relative to the first file, otherwise to the file that includes it.
+    fn find(&self, name: &str, open: &[PathBuf]) -> PathBuf {
+        let path = self.path.join(name);
+        let around = open.last().and_then(|file| file.parent());
+        let near = around.map(|folder| folder.join(name));
+        match near {
+            Some(near) if !path.exists() && near.exists() => near,
+            _ => path,
+        }
+    }
+
     /// Whether a name means a file in the folder or below, also after symbolic links.
     fn contains(&self, name: &str, path: &Path) -> bool {
         let mut components = Path::new(name).components();
@@ -83,7 +96,7 @@ fn expand(
             files.report(&child.place, "<include> names no file", "write file=\"…\"");
             continue;
         };
-        let path = folder.path.join(name);
+        let path = folder.find(name, open);
         let same = |other: &PathBuf| match (path.canonicalize(), other.canonicalize()) {
             (Ok(a), Ok(b)) => a == b,
             _ => *other == path,

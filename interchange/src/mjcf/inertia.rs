@@ -1,6 +1,6 @@
 //! Inertias of bodies from `<inertial>` or from geoms, computed as in MuJoCo.
 
-use super::{BOOLEAN, Reader, shell::Shell};
+use super::{BOOLEAN, ROTATIONS, Reader, only_one, shell::Shell};
 use crate::{
     account::Use,
     files::Files,
@@ -75,10 +75,14 @@ fn of_inertial(reader: &Reader<'_>, inertial: &Element) -> Inertia {
         files.report(place, "a mass is negative", help);
     }
     let frame = reader.compiler.frame(files, inertial);
+    if inertial.get("fullinertia").is_some() {
+        // MuJoCo rejects a rotation, too: `fullinertia` is in the body's axes.
+        for other in ROTATIONS.iter().chain(&["diaginertia"]) {
+            only_one(files, inertial, &["fullinertia", other]);
+        }
+    }
     if let Some([xx, yy, zz, xy, xz, yz]) = inertial.numbers(files, "fullinertia") {
         let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-        // MuJoCo rotates the inertial frame to the principal axes; `fullinertia` is in the body's
-        // axes.
         let frame = Pose::from_parts(frame.translation, Rotation3::identity());
         return about_centre(mass, tensor).transformed(&frame);
     }
@@ -210,6 +214,7 @@ fn primitive(
     let files: &Files = reader.files;
     let size = geom.list(files, "size").unwrap_or_default();
     let length = Segment::of_geom(files, geom).map(|segment| segment.length());
+    check_sizes(files, geom, kind, &size, length);
     let at = |index: usize| size.get(index).copied();
     let radius = at(0)?;
     // With `fromto`, x and y use the first size.
@@ -253,6 +258,26 @@ fn primitive(
         "capsule" => capsule(radius, 2.0 * half_length(1)?),
         _ => return None,
     })
+}
+
+/// Reports sizes of a primitive that are not positive.
+fn check_sizes(files: &Files, geom: &Element, kind: &str, size: &[f64], length: Option<f64>) {
+    let used = match kind {
+        "sphere" => 1,
+        _ if length.is_some() => 1,
+        "capsule" | "cylinder" => 2,
+        _ => 3,
+    };
+    let given = geom.attribute("size").map(|(_, place)| place);
+    if let Some(place) = given.filter(|_| size.iter().take(used).any(|own| *own <= 0.0)) {
+        let message = "a size of the geom is not positive";
+        files.report(place, message, "give radii and half lengths in m");
+    }
+    let ends = geom.attribute("fromto").map(|(_, place)| place);
+    if let Some(place) = ends.filter(|_| length == Some(0.0)) {
+        let message = "`fromto` of the geom has no length";
+        files.report(place, message, "give two different points");
+    }
 }
 
 fn uniform(value: f64) -> Vector3<f64> {

@@ -10,6 +10,7 @@ mod include;
 mod inertia;
 mod keyframe;
 mod mesh;
+mod names;
 mod shell;
 mod tendons;
 #[cfg(test)]
@@ -191,6 +192,7 @@ impl Compiler {
 
     /// Rotation given by `quat`, `axisangle`, `xyaxes`, `zaxis` or `euler`.
     fn rotation(&self, files: &Files, of: &Element) -> Rotation3<f64> {
+        only_one(files, of, ROTATIONS);
         if let Some(quaternion) = of.numbers(files, "quat") {
             return exact::quaternion(quaternion).unwrap_or_else(|| {
                 files.report(
@@ -240,6 +242,22 @@ impl Compiler {
     fn frame(&self, files: &Files, of: &Element) -> Pose {
         let [x, y, z] = of.numbers(files, "pos").unwrap_or_default();
         Pose::from_parts(Vector3::new(x, y, z).into(), self.rotation(files, of))
+    }
+}
+
+/// Attributes that give a rotation.
+const ROTATIONS: &[&str] = &["quat", "axisangle", "xyaxes", "zaxis", "euler"];
+
+/// Reports a second attribute of those that exclude each other.
+fn only_one(files: &Files, of: &Element, names: &[&str]) {
+    let given = of.attributes.iter();
+    let mut given = given.filter(|(name, ..)| names.contains(&name.as_str()));
+    if let (Some((first, ..)), Some((second, _, place))) = (given.next(), given.next()) {
+        let message = format!(
+            "`{}` has both `{first}` and `{second}`, which exclude each other",
+            of.name
+        );
+        files.report(place, message, "keep one of them");
     }
 }
 

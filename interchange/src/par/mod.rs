@@ -4,6 +4,7 @@
 //! or symbols.
 
 mod expression;
+mod symbols;
 mod text;
 
 use crate::{
@@ -41,6 +42,7 @@ pub(crate) fn read(files: &Files, file: usize, options: &Options) -> Option<Mode
         let values: Vec<&str> = values.iter().map(|(text, _)| text.as_str()).collect();
         record_key(files, &PAR, "par", key, &values.join(" "), place);
     }
+    symbols::check(files, &entries, options)?;
     let reader = Reader {
         files,
         entries,

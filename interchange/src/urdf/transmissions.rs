@@ -190,6 +190,14 @@ fn drive_two(
         }
         return;
     };
+    if first == second {
+        let message = format!(
+            "a transmission couples `{}` to itself",
+            model.joints[first].name
+        );
+        files.report(&transmission.place, message, "name two different joints");
+        return;
+    }
     let gear = |of: &Element| reduction(files, of).unwrap_or(1.0);
     let factors = coupling.factors(joints.map(gear));
     model.says_motors = true;

@@ -15,7 +15,8 @@ const PARALLEL: f64 = 1e-9;
 /// Replaces the points that close planar loops by pins perpendicular to the plane.
 ///
 /// In a planar loop all bodies move in parallel planes, so a point holds as much as a pin. A pin
-/// takes one joint of a chain instead of three.
+/// takes one joint of a chain instead of three. It also leaves no other solutions: the equations
+/// of a point that are independent at home may be solved off the plane elsewhere.
 pub(crate) fn planar(model: &mut Model) {
     if !model.closures.iter().any(|own| is_point(&own.kind)) {
         return;
@@ -40,12 +41,7 @@ pub(crate) fn planar(model: &mut Model) {
     }
     let mut pins = Vec::new();
     for edges in of_block.values() {
-        if let Some(normal) = normal(model, &state, edges) {
-            pins.extend(edges.iter().filter_map(|edge| match edge.origin {
-                Origin::Closure(at) if edge.kind == JointType::Ball => Some((at, normal)),
-                _ => None,
-            }));
-        }
+        pins.extend(planar_points(model, &state, edges));
     }
     for (at, normal) in pins {
         let kind = &mut model.closures[at].kind;
@@ -68,39 +64,65 @@ fn is_point(kind: &ClosureKind) -> bool {
     matches!(kind, ClosureKind::Point { .. })
 }
 
-/// Normal of the plane in which joints keep all bodies of a block; `None` if there is none.
-fn normal(model: &Model, state: &State, edges: &[&Edge]) -> Option<Vector3<f64>> {
+/// Point closures between bodies that joints keep in parallel planes, with the planes' normals.
+///
+/// The bodies are connected by hinges along the normal and slides across it. Other joints of the
+/// block do not matter: a point between such bodies holds as much as a pin.
+fn planar_points(model: &Model, state: &State, edges: &[&Edge]) -> Vec<(usize, Vector3<f64>)> {
     let carried = model.carried();
-    let axis = |edge: &Edge| axis(model, state, &carried, edge);
-    let hinge = edges.iter().find(|edge| edge.kind == JointType::Revolute)?;
-    let normal = axis(hinge)?.direction;
-    let is_planar = |edge: &&&Edge| match (edge.kind, edge.origin) {
-        (JointType::Ball, Origin::Closure(_)) => true,
-        (JointType::Ball, _) => false,
-        (JointType::Revolute, _) => {
-            axis(edge).is_some_and(|own| own.direction.cross(&normal).norm() < PARALLEL)
-        }
-        (JointType::Prismatic, _) => {
-            axis(edge).is_some_and(|own| own.direction.dot(&normal).abs() < PARALLEL)
-        }
-    };
-    if !edges.iter().all(|edge| is_planar(&edge)) {
-        return None;
-    }
-    // The joints and pins alone must connect all bodies: a point does not keep a body in the plane.
-    let mut of_group: BTreeMap<usize, usize> = BTreeMap::new();
-    for group in edges.iter().flat_map(|edge| edge.groups) {
-        of_group.insert(group, group);
-    }
-    for edge in edges.iter().filter(|edge| edge.kind != JointType::Ball) {
-        let [a, b] = edge.groups.map(|group| of_group[&group]);
-        for root in of_group.values_mut().filter(|root| **root == b) {
-            *root = a;
+    let axes: Vec<Option<Vector3<f64>>> = edges
+        .iter()
+        .map(|edge| axis(model, state, &carried, edge).map(|own| own.direction))
+        .collect();
+    let mut normals: Vec<Vector3<f64>> = Vec::new();
+    for (edge, axis) in edges.iter().zip(&axes) {
+        if let Some(axis) = axis.filter(|_| edge.kind == JointType::Revolute)
+            && !normals.iter().any(|normal| is_parallel(normal, &axis))
+        {
+            normals.push(axis);
         }
     }
-    let mut roots = of_group.values();
-    let first = roots.next()?;
-    roots.all(|root| root == first).then_some(normal)
+    let mut found: BTreeMap<usize, Vector3<f64>> = BTreeMap::new();
+    for normal in &normals {
+        let plane = planes(edges, &axes, normal);
+        for edge in edges.iter().filter(|edge| edge.kind == JointType::Ball) {
+            let [a, b] = edge.groups.map(|group| plane[&group]);
+            if let Origin::Closure(at) = edge.origin
+                && a == b
+            {
+                found.entry(at).or_insert(*normal);
+            }
+        }
+    }
+    found.into_iter().collect()
+}
+
+/// Plane of each group of bodies: equal if joints keep the groups in parallel planes.
+fn planes(
+    edges: &[&Edge],
+    axes: &[Option<Vector3<f64>>],
+    normal: &Vector3<f64>,
+) -> BTreeMap<usize, usize> {
+    let groups = edges.iter().flat_map(|edge| edge.groups);
+    let mut plane: BTreeMap<usize, usize> = groups.map(|group| (group, group)).collect();
+    for (edge, axis) in edges.iter().zip(axes) {
+        let is_planar = axis.is_some_and(|axis| match edge.kind {
+            JointType::Revolute => is_parallel(normal, &axis),
+            JointType::Prismatic => axis.dot(normal).abs() < PARALLEL,
+            JointType::Ball => false,
+        });
+        if is_planar {
+            let [a, b] = edge.groups.map(|group| plane[&group]);
+            for own in plane.values_mut().filter(|own| **own == b) {
+                *own = a;
+            }
+        }
+    }
+    plane
+}
+
+fn is_parallel(a: &Vector3<f64>, b: &Vector3<f64>) -> bool {
+    a.cross(b).norm() < PARALLEL
 }
 
 /// Axis of a joint or pin in a configuration; `None` for other edges.
