@@ -8,7 +8,7 @@
 
 use overact_codegen::Source;
 use overact_tests::support::tree::{self, SKELETON};
-use overact_tests::support::{Failure, all_functions::against_reference};
+use overact_tests::support::{Failure, all_functions::against_reference, model_of};
 use overact_tier::{by_tier, by_tiers, is_full};
 
 const TOLERANCE: f64 = 1e-9;
@@ -212,4 +212,39 @@ shape = "loop"
 home = { rocker = "102 deg", coupler = "102 deg", pin = "-84 deg" }
 "#;
     compare("a rigid end", text.to_owned())
+}
+
+/// A crank of 0.1 m that swings a rocker of 0.25 m through a coupler of 0.3 m.
+fn crank(home: u32) -> String {
+    format!(
+        "name = \"Crank\"\ngravity = [0.0, -9.81, 0.0]\n\n\
+         [[leg.drive.joint]]\nname = \"motor\"\ntype = \"revolute\"\nactuated = true\n\n\
+         [leg.loop]\nbase = {{ at = [0.35, 0.0, 0.0] }}\n\
+         end = {{ type = \"point\", body = \"motor\", at = [0.1, 0.0, 0.0] }}\n\
+         [[leg.loop.joint]]\nname = \"rocker\"\ntype = \"revolute\"\n\
+         [[leg.loop.joint]]\nname = \"coupler\"\ntype = \"revolute\"\nd = 0.25\n\
+         [[leg.loop.joint]]\nname = \"tip\"\ntype = \"fixed\"\nd = 0.3\nparameters = []\n\n\
+         [[place]]\nname = \"drive\"\nshape = \"drive\"\nhome = {{ motor = \"{home} deg\" }}\n\
+         [[place]]\nname = \"loop\"\nshape = \"loop\"\n\
+         home = {{ rocker = \"110 deg\", coupler = \"90 deg\" }}\n"
+    )
+}
+
+#[test]
+fn regroupings_of_a_crank_do_not_depend_on_its_home() -> Result<(), Failure> {
+    let regroupings = |home: u32| -> Result<Vec<(String, String, f64)>, Failure> {
+        let model = model_of(&Source::new("crank.toml", crank(home)))?;
+        let name = |parameter| model.parameter_name(parameter);
+        let all = model.base.iter().flat_map(|base| {
+            let own = base.regrouped.iter();
+            own.map(|(parameter, factor)| (name(base.parameter), name(*parameter), *factor))
+        });
+        Ok(all.collect())
+    };
+    let wanted = regroupings(20)?;
+    assert!(!wanted.is_empty());
+    for home in [45, 90, 135] {
+        assert_eq!(regroupings(home)?, wanted, "home at {home} deg");
+    }
+    Ok(())
 }

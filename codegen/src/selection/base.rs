@@ -133,11 +133,11 @@ fn combinations(matrix: &DMatrix<f64>, kept: &[usize], dependent: &[usize]) -> D
     solved
 }
 
-/// The simplest fraction within 1e-10 of a number, by its continued fraction.
+/// A simple fraction near a number, by its continued fraction. `precision` is relative.
 ///
-/// It is a guess: nearly every number has a fraction of six digits as close as that.
+/// It is a guess: nearly every number has a fraction of six digits within 1e-10.
 #[must_use]
-pub(super) fn nearby_ratio(value: f64) -> Option<Ratio> {
+pub(super) fn nearby_ratio(value: f64, precision: f64) -> Option<Ratio> {
     let (mut h0, mut h1, mut k0, mut k1) = (0_i128, 1_i128, 1_i128, 0_i128);
     let mut rest = value;
     for _ in 0..20 {
@@ -151,7 +151,7 @@ pub(super) fn nearby_ratio(value: f64) -> Option<Ratio> {
         if k1 > 1_000_000 {
             return None;
         }
-        if (h1 as f64 / k1 as f64 - value).abs() <= 1e-10 * value.abs() {
+        if (h1 as f64 / k1 as f64 - value).abs() <= precision * value.abs() {
             return Ratio::new(h1, k1);
         }
         if rest == whole {
@@ -168,8 +168,10 @@ mod tests {
 
     #[test]
     fn simple_ratios_are_recognised() {
-        let ratio = nearby_ratio(0.11 * 0.11 / 0.28).unwrap();
+        let ratio = nearby_ratio(0.11 * 0.11 / 0.28, 1e-10).unwrap();
         assert_eq!((ratio.numerator(), ratio.denominator()), (121, 2800));
-        assert_eq!(nearby_ratio(-0.28).unwrap().to_string(), "-7/25");
+        assert_eq!(nearby_ratio(-0.28, 1e-10).unwrap().to_string(), "-7/25");
+        let third = nearby_ratio(0.333_333_2, 1e-6).unwrap();
+        assert_eq!((third.numerator(), third.denominator()), (1, 3));
     }
 }

@@ -52,7 +52,8 @@ pub(super) fn cheaper_columns(
 /// Finds exact fractions for the coefficients of regroupings.
 ///
 /// A combination is returned if it equals the dependent column as an expression. Its coefficients in
-/// `base` become exact; all others keep their computed values.
+/// `base` become exact, and further ones, which are rounding errors, are removed; those of all other
+/// columns keep their computed values.
 pub(super) fn exact_combinations(
     regressor: &Regressor,
     base: &mut [BaseParameter],
@@ -61,27 +62,65 @@ pub(super) fn exact_combinations(
         let column = regressor.column(guess.parameter);
         column.is_some() && column == regressor.combination(&guess.of)
     };
-    let mut guesses = guesses(base);
-    guesses.retain(is_exact);
-    for combination in &guesses {
-        for (kept, coefficient) in &combination.of {
-            let of_kept = base.iter_mut().filter(|b| b.parameter == *kept);
-            let entries = of_kept.flat_map(|b| &mut b.regrouped);
-            for (_, value) in entries.filter(|(p, _)| *p == combination.parameter) {
-                *value = coefficient.value();
+    let mut proved: Vec<Combination> = Vec::new();
+    for precision in [Precision::COMPUTED, Precision::ILL_CONDITIONED] {
+        let mut guesses = guesses(base, precision);
+        guesses.retain(|guess| {
+            let is_new = proved
+                .iter()
+                .all(|known| known.parameter != guess.parameter);
+            is_new && is_exact(guess)
+        });
+        proved.extend(guesses);
+    }
+    for combination in &proved {
+        for kept in &mut *base {
+            let exact = combination.of.iter().find(|(p, _)| *p == kept.parameter);
+            match exact {
+                Some((_, coefficient)) => {
+                    let own = kept.regrouped.iter_mut();
+                    own.filter(|(p, _)| *p == combination.parameter)
+                        .for_each(|(_, value)| *value = coefficient.value());
+                }
+                None => kept.regrouped.retain(|(p, _)| *p != combination.parameter),
             }
         }
     }
-    guesses
+    proved
+}
+
+/// How precisely coefficients are known before they are proved.
+#[derive(Debug, Clone, Copy)]
+struct Precision {
+    /// Coefficients below this are taken for zero.
+    zero: f64,
+    /// Largest relative difference from a fraction.
+    relative: f64,
+}
+
+impl Precision {
+    /// Of columns that differ clearly.
+    const COMPUTED: Self = Self {
+        zero: 0.0,
+        relative: 1e-10,
+    };
+    /// Of columns that nearly depend on each other, as those of mechanisms with a symmetric home.
+    const ILL_CONDITIONED: Self = Self {
+        zero: 1e-6,
+        relative: 1e-6,
+    };
 }
 
 /// Combinations whose coefficients are all close to simple fractions.
-fn guesses(base: &[BaseParameter]) -> Vec<Combination> {
+fn guesses(base: &[BaseParameter], precision: Precision) -> Vec<Combination> {
     let mut all: Vec<Combination> = Vec::new();
     let mut inexact: Vec<BodyParameter> = Vec::new();
     for kept in base {
         for &(parameter, coefficient) in &kept.regrouped {
-            let Some(ratio) = nearby_ratio(coefficient) else {
+            if coefficient.abs() < precision.zero {
+                continue;
+            }
+            let Some(ratio) = nearby_ratio(coefficient, precision.relative) else {
                 inexact.push(parameter);
                 continue;
             };
