@@ -193,7 +193,7 @@ pub fn declaration(model: &RobotModel, naming: &Naming) -> String {
     });
     let lines: String = lines.collect();
     let head = naming.apply(
-        "/** Why a function has no value; 0 if it has one. Of several legs that fail the first is told. */\n\
+        "/** Why a function has no value; 0 if it has one. If several legs fail, it names the first. */\n\
          typedef enum rob_error {\n",
     );
     let end = naming.apply(
