@@ -45,25 +45,44 @@ fn transmissions<T: Float>(given: &Numbers<T>) -> Result<T, transmission::Error>
         one.joint_gains(motors)?[1],
         one.joint_stiffness(motors, motors, &second)?[2],
     ];
-    for number in all_motors.as_flattened().iter().chain(all_joints.as_flattened()) {
+    for number in all_motors
+        .as_flattened()
+        .iter()
+        .chain(all_joints.as_flattened())
+    {
         sum += *number;
     }
-    for interval in one.speed_intervals(&limits)?.iter().chain(&one.torque_intervals(&limits)?) {
+    for interval in one
+        .speed_intervals(&limits)?
+        .iter()
+        .chain(&one.torque_intervals(&limits)?)
+    {
         sum += interval.least + interval.most;
     }
     Ok(sum + one.speed_factor(joints, &limits)? + one.torque_factor(joints, &limits)?)
 }
 
 fn estimators<T: Float>(given: &Numbers<T>) -> Result<T, Error> {
-    let Numbers { joints, rows, number, index, .. } = *given;
+    let Numbers {
+        joints,
+        rows,
+        number,
+        index,
+        ..
+    } = *given;
     let sigma = [number; 2];
-    let mut filter = Filter::new(joints, given.gains)?
-        .with_forgetting(Forgetting::Directional(number))?;
+    let mut filter =
+        Filter::new(joints, given.gains)?.with_forgetting(Forgetting::Directional(number))?;
     let other = Filter::from_covariance(joints, given.gains)?;
     filter.update_block(&rows, &[number; 2], &sigma)?;
     filter.update(&joints, number, number)?;
     let mut innovations = [Innovation::default(); 2];
-    filter.update_slices(rows.get(..index).unwrap_or(&rows), &sigma, &sigma, &mut innovations)?;
+    filter.update_slices(
+        rows.get(..index).unwrap_or(&rows),
+        &sigma,
+        &sigma,
+        &mut innovations,
+    )?;
     filter.discount(number)?;
     let covariance = filter.covariance()?;
     let mut sum = covariance[0][1] + filter.estimate()?[0] + other.standard_deviations()?[1];
@@ -85,7 +104,10 @@ fn estimators<T: Float>(given: &Numbers<T>) -> Result<T, Error> {
     slices.covariance(&mut all)?;
     sum += values[0] + deviations[1] + all[5] + innovations[1].normalised;
 
-    let size = PayloadSize { mass: number, length: number };
+    let size = PayloadSize {
+        mass: number,
+        length: number,
+    };
     let mut payload = PayloadEstimator::new(StandardParameter::INERTIA, size)?
         .with_forgetting(Forgetting::Exponential(number))?;
     payload.update(&given.inertial, &sigma, &sigma)?;
