@@ -1,4 +1,5 @@
-//! Generated modules contain no panics in optimised object code.
+//! Generated modules, online estimators and transmissions contain no panics in optimised object code,
+//! and no allocation.
 //!
 //! All robots are compiled without the standard library into one shared object, whose panic handler
 //! calls an undefined function. If a panic is reachable, the linker fails and names the function.
@@ -55,6 +56,30 @@ fn a_possible_panic_is_detected() -> Result<(), Failure> {
     Ok(())
 }
 
+/// Online estimators and transmissions, in 64 and 32 bits, without an allocator.
+#[test]
+fn estimators_and_transmissions_link_without_panics() -> Result<(), Failure> {
+    if !overact_tier::is_full() {
+        return Ok(());
+    }
+    let handler = panic_handler();
+    let text = format!("#![no_std]\n{handler}{ESTIMATORS}");
+    let linker_message = link_library("estimators", &text, &[])?;
+    assert!(
+        linker_message.is_none(),
+        "{}",
+        linker_message.unwrap_or_default()
+    );
+    let indexed = ESTIMATORS.replacen("covariance[0][1]", "covariance[index][1]", 1);
+    let text = format!("#![no_std]\n{handler}{indexed}");
+    let linker_message = link_library("estimators", &text, &[])?;
+    assert!(linker_message.is_some_and(|linker_message| linker_message.contains(PANIC_SYMBOL)));
+    Ok(())
+}
+
+/// Calls every function of the estimators and transmissions with numbers of the caller.
+const ESTIMATORS: &str = include_str!("../panics/estimators.rs");
+
 /// Generated module of a robot.
 fn module(stem: &str) -> Result<String, Failure> {
     let source = description(stem)?;
@@ -80,10 +105,19 @@ fn model(source: &Source) -> Result<RobotModel, Failure> {
 
 /// Builds a shared object of modules; returns the linker's message if it fails.
 fn link(name: &str, modules: &[(String, String)]) -> Result<Option<String>, Failure> {
+    link_library(name, &library(modules)?, modules)
+}
+
+/// Builds a shared object of a library with modules; returns the linker's message if it fails.
+fn link_library(
+    name: &str,
+    library: &str,
+    modules: &[(String, String)],
+) -> Result<Option<String>, Failure> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     fs::create_dir_all(folder.join("src"))?;
     fs::write(folder.join("Cargo.toml"), manifest(name))?;
-    fs::write(folder.join("src/lib.rs"), library(modules)?)?;
+    fs::write(folder.join("src/lib.rs"), library)?;
     for (stem, text) in modules {
         fs::write(folder.join(format!("src/{stem}.rs")), text)?;
     }
@@ -119,16 +153,22 @@ fn library(modules: &[(String, String)]) -> Result<String, Failure> {
         writeln!(text, "mod {stem};")?;
         write!(robots, "&{stem}::{name}, ")?;
     }
-    let count = modules.len();
+    let (count, handler) = (modules.len(), panic_handler());
     write!(
         text,
-        "unsafe extern \"C\" {{ fn {PANIC_SYMBOL}() -> !; }}\n\
-         #[panic_handler]\n\
-         fn panic(_: &core::panic::PanicInfo<'_>) -> ! {{ unsafe {{ {PANIC_SYMBOL}() }} }}\n\
-         static ROBOTS: [&dyn overact::Model; {count}] = [{robots}];\n\
+        "{handler}static ROBOTS: [&dyn overact::Model; {count}] = [{robots}];\n\
          #[unsafe(no_mangle)]\n\
          pub extern \"C\" fn robots() -> *const core::ffi::c_void {{\n    \
              (&raw const ROBOTS).cast()\n}}\n"
     )?;
     Ok(text)
+}
+
+/// Panic handler that calls an undefined function.
+fn panic_handler() -> String {
+    format!(
+        "unsafe extern \"C\" {{ fn {PANIC_SYMBOL}() -> !; }}\n\
+         #[panic_handler]\n\
+         fn panic(_: &core::panic::PanicInfo<'_>) -> ! {{ unsafe {{ {PANIC_SYMBOL}() }} }}\n"
+    )
 }

@@ -343,6 +343,7 @@ pub(super) fn identification() -> Identification {
         gear_friction: Vec::new(),
         motors: Vec::new(),
         functions_base: Vec::new(),
+        timings: Vec::new(),
         assumptions: vec![String::from("the gains are right")],
         unseen: Vec::new(),
         verdicts: vec![
