@@ -239,6 +239,7 @@ const LAYER_ORDERS: [LayerOrder; 10] = [
             "signals",
             "note",
             "progress",
+            "stopwatch",
             "input",
             "output",
             "effort",

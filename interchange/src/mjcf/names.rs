@@ -27,8 +27,8 @@ impl TakenNames {
                 "joint" | "freejoint" => Some(&mut self.joints),
                 _ => None,
             };
-            if let (Some(names), Some(name)) = (names, child.get("name")) {
-                names.insert(name.to_owned());
+            if let Some(names) = names {
+                names.extend(child.get("name").map(str::to_owned));
             }
             self.gather(child);
         }
