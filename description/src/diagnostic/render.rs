@@ -4,6 +4,7 @@ use super::{Diagnostic, Diagnostics, Source};
 use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use overact_core::text::is_invisible;
 use serde::Serialize;
+use std::collections::HashMap;
 
 /// An error with its location, for JSON.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -53,16 +54,32 @@ impl Diagnostics {
     }
 
     fn render(&self, source: &Source, renderer: &Renderer) -> String {
+        let mut places: HashMap<&str, Vec<&Diagnostic>> = HashMap::new();
+        for diagnostic in self.iter() {
+            places
+                .entry(&diagnostic.message)
+                .or_default()
+                .push(diagnostic);
+        }
         let mut texts: Vec<String> = Vec::new();
-        for (at, diagnostic) in self.iter().enumerate() {
-            let same = |d: &&Diagnostic| d.message == diagnostic.message;
-            let first = self.iter().position(|d| same(&d)) == Some(at);
-            let places: Vec<&Diagnostic> = self.iter().filter(same).collect();
-            match places.len() > REPEATED {
-                true if first => texts.push(render_one(diagnostic, &places[1..], source, renderer)),
-                true => {}
-                false => texts.push(render_one(diagnostic, &[], source, renderer)),
+        let mut left = 0;
+        for diagnostic in self.iter() {
+            let same = &places[diagnostic.message.as_str()];
+            let is_repeated = same.len() > REPEATED;
+            if is_repeated && !std::ptr::eq(same[0], diagnostic) {
+                continue;
             }
+            if texts.len() == SHOWN {
+                left += 1;
+                continue;
+            }
+            let others = if is_repeated { &same[1..] } else { &[] };
+            texts.push(render_one(diagnostic, others, source, renderer));
+        }
+        if left > 0 {
+            texts.push(format!(
+                "{left} further errors are not shown; `overact check --json` lists all"
+            ));
         }
         texts.join("\n\n")
     }
@@ -73,13 +90,20 @@ impl Diagnostics {
 /// A file name must not rearrange a message.
 #[must_use]
 pub fn visible(text: &str) -> String {
-    let shown = |c: char| match c {
-        '\n' => c,
-        c if is_invisible(c) => '\u{fffd}',
-        c => c,
-    };
+    text.split('\n')
+        .map(visible_in_line)
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+/// The same for a text of one line, such as a file name.
+fn visible_in_line(text: &str) -> String {
+    let shown = |c: char| if is_invisible(c) { '\u{fffd}' } else { c };
     text.chars().map(shown).collect()
 }
+
+/// Largest number of errors that are shown; each takes a time that grows with the text.
+const SHOWN: usize = 100;
 
 /// Number of locations above which an error is shown once, with the line numbers of the others.
 const REPEATED: usize = 3;
@@ -109,7 +133,7 @@ fn render_one(
     let title = Level::ERROR
         .primary_title(message.as_str())
         .id(code.as_str());
-    let path = visible(&source.name);
+    let path = visible_in_line(&source.name);
     let mut group = match &diagnostic.span {
         Some(span) => {
             let label = Some(label.as_str()).filter(|label| !label.is_empty());
@@ -161,12 +185,12 @@ error[OA102]: unknown key `gammma`
 
     #[test]
     fn control_characters_of_file_names_are_not_printed() {
-        let source = Source::new("a\u{1b}[31m.toml", "name = \"A\"");
+        let source = Source::new("a\u{1b}[31m\n.toml", "name = \"A\"");
         let located = Diagnostic::new(Code::UNKNOWN_KEY, "unknown", 0..4);
         for error in [located, Diagnostic::global(Code::UNKNOWN_KEY, "unknown")] {
             let message = Diagnostics::from(error).render_plain(&source);
             assert!(
-                !message.contains('\u{1b}') && message.contains("[31m.toml"),
+                !message.contains('\u{1b}') && message.contains("[31m\u{fffd}.toml"),
                 "{message}"
             );
         }
@@ -208,6 +232,22 @@ error[OA102]: unknown key `gammma`
         let note = "= note: the same in lines 2, 3, 4, 5, 6, 7, 8, 9 and at 5 more places";
         assert!(text.contains(note), "{text}");
         assert_eq!(errors.located(&source).len(), 15);
+    }
+
+    #[test]
+    fn only_the_first_hundred_errors_are_shown() {
+        let source = Source::new("a.toml", "x\n".repeat(120));
+        let mut errors = Diagnostics::new();
+        for line in 0..120 {
+            let span = 2 * line..2 * line + 1;
+            let message = format!("wrong in part {line}");
+            errors.push(Diagnostic::new(Code::UNKNOWN_KEY, message, span));
+        }
+        let text = errors.render_plain(&source);
+        assert_eq!(text.matches("error[OA102]: ").count(), 100);
+        let end = "\n\n20 further errors are not shown; `overact check --json` lists all";
+        assert!(text.ends_with(end), "{text}");
+        assert_eq!(errors.located(&source).len(), 120);
     }
 
     #[test]
