@@ -320,10 +320,9 @@ fn times<S: Simd>(simd: S, factor: Mode, x: S::f64s, y: S::f64s) -> [S::f64s; 2]
 /// Whether `N` vectors of successive numbers are zero.
 #[inline(always)]
 fn is_zero<S: Simd, const N: usize>(simd: S, values: &[f64], first: usize) -> bool {
-    let own = vectors::<S, N>(values, first);
     let mut sum = simd.splat_f64s(0.0);
-    for place in 0..N {
-        sum = simd.add_f64s(sum, simd.abs_f64s(own[place]));
+    for own in vectors::<S, N>(values, first) {
+        sum = simd.add_f64s(sum, simd.abs_f64s(own));
     }
     simd.reduce_sum_f64s(sum) == 0.0
 }
