@@ -187,14 +187,19 @@ def candidates(robot, task, names, homes, driven):
                 if matrix is None:
                     continue
                 entries = casadi.cse(casadi.vec(casadi.densify(matrix).T))
-                arguments = [
-                    casadi.vertcat(*[algebra.symbols[f"{name}[{i}]"] for i in range(length)])
-                    for name, length in task.inputs
-                ]
-                function = casadi.Function("peer", arguments, [entries])
-                counted = count(function)
-                rank = counted.operations + PAIR * counted.trigonometric_pairs
+                rank, counted, function = ranked(algebra, task, entries)
                 yield rank, index, f"{kind}, {mode}, {form}", counted, function
+
+
+def ranked(algebra, task, entries):
+    """Rank by operations, count and function of CasADi for the entries of a task."""
+    arguments = [
+        casadi.vertcat(*[algebra.symbols[f"{name}[{i}]"] for i in range(length)])
+        for name, length in task.inputs
+    ]
+    function = casadi.Function("peer", arguments, [entries])
+    counted = count(function)
+    return counted.operations + PAIR * counted.trigonometric_pairs, counted, function
 
 
 def best(robot, task, names, homes, driven):

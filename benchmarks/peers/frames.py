@@ -16,13 +16,13 @@ import numpy as np
 
 from . import controller, derivatives, dynamics, ours, report
 from .algebra import ZERO, add, apply, cross, matrix, product, transpose, vector
-from .casadi_peer import Casadi, count
+from .casadi_peer import Casadi
 from .closure import close
 from .description import load
 from .model import Angles, LegModel
 from .platform import Platform
 from .robot import symbols
-from .search import PAIR, forms
+from .search import forms
 
 #: Robots and the body of their frame; without one the platform or the last body.
 CELLS = [
@@ -165,13 +165,7 @@ def candidates(robot, task, homes, driven, body):
                 if rows is None or (mode != "geometric" and frame):
                     continue
                 entries = casadi.cse(casadi.vertcat(*[casadi.SX(e.value) for row in rows for e in row]))
-                arguments = [
-                    casadi.vertcat(*[algebra.symbols[f"{name}[{i}]"] for i in range(length)])
-                    for name, length in task.inputs
-                ]
-                function = casadi.Function("peer", arguments, [entries])
-                counted = count(function)
-                rank = counted.operations + PAIR * counted.trigonometric_pairs
+                rank, counted, function = derivatives.ranked(algebra, task, entries)
                 yield rank, index, f"{mode}, {own}", counted, function
 
 
