@@ -1,6 +1,9 @@
 //! Input files and their errors, each with file and line; all errors are collected.
 
-use crate::account::{Account, Ledger, Use};
+use crate::{
+    account::{Account, Ledger, Use},
+    listing::listed,
+};
 use overact_description::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span, did_you_mean};
 use std::{
     cell::{Cell, RefCell},
@@ -249,6 +252,21 @@ impl Files {
         let left = self.suggestions_left.get().checked_sub(1)?;
         self.suggestions_left.set(left);
         did_you_mean(name, candidates)
+    }
+
+    /// Help for an unknown joint: the closest name, or the names of the first joints.
+    pub(crate) fn joint_help<'a>(
+        &self,
+        name: &str,
+        joints: impl Iterator<Item = &'a str> + Clone,
+    ) -> String {
+        if let Some(near) = self.did_you_mean(name, joints.clone()) {
+            return near;
+        }
+        match listed(joints) {
+            none if none.is_empty() => "the file has no joints".to_owned(),
+            names => format!("the joints of the file are {names}"),
+        }
     }
 
     /// Records the treatment of an element or attribute.

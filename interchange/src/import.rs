@@ -316,8 +316,7 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
         let found = model.joint_named(name);
         if found.is_none() {
             let names = model.joints.iter().map(|joint| joint.name.as_str());
-            let near = files.did_you_mean(name, names);
-            let help = near.unwrap_or_else(|| "name moving joints of the file".to_owned());
+            let help = files.joint_help(name, names);
             files.refuse(format!("there is no joint `{name}`"), help);
         }
         found

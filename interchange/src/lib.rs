@@ -48,6 +48,7 @@ mod format;
 mod frames;
 mod geometry;
 mod import;
+mod listing;
 mod mjcf;
 mod model;
 mod motors;

@@ -249,6 +249,16 @@ fn invalid_expressions_are_rejected_with_the_reason() {
         "log.csv: there is no column `q7`; the file has `t`, `q5`, `q6`, `i`\n  help: did you mean `q5` for `q7`?\n\
          log.csv: `(i` is neither a column nor an expression of columns: `)` is missing at the end\n  help: put names with blanks or signs in single quotation marks: `'motor 1' / 50`"
     );
+    let log_with_units = ("log.csv", "t,q5,cur [A]\n0,1,2\n1,3,0\n2,0,0.25\n");
+    assert_eq!(
+        run(
+            "log.csv",
+            &[log_with_units],
+            &mapping(column("t"), "q5", "2*cur [A]")
+        )
+        .expect_err("an error"),
+        "log.csv: `2*cur [A]` is neither a column nor an expression of columns: an operator is missing at ` [A]`\n  help: put its name in single quotation marks: `2*'cur [A]'`"
+    );
     assert_eq!(
         refused("q5/q6", "i"),
         "log.csv:3: sample 1: `q5/q6` is not a finite number"

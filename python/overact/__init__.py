@@ -1,4 +1,4 @@
-"""Dynamic models and parameter identification of overactuated parallel robots.
+"""Dynamic models and parameter identification of robots with closed loops and redundant motors.
 
 >>> import overact
 >>> robot = overact.Robot("robots/dualv.toml")

@@ -20,7 +20,7 @@ use crate::failure::Failure;
 use clap::{Parser, Subcommand};
 use std::{path::PathBuf, slice};
 
-/// Dynamic models and parameter identification of overactuated parallel robots.
+/// Dynamic models and parameter identification of robots with closed loops and redundant motors.
 #[derive(Debug, Parser)]
 #[command(name = "overact", version, propagate_version = true)]
 pub(crate) struct Arguments {
@@ -43,7 +43,7 @@ pub(crate) enum Command {
     Check(check::Arguments),
     /// Print sizes, bodies, base parameters, operation counts and conditioning
     Inspect(inspect::Arguments),
-    /// Write a robot's functions as Rust source
+    /// Write a robot's functions as source in Rust, C or C++
     Generate(generate::Arguments),
     /// Evaluate a function on given states
     Evaluate(evaluate::Arguments),

@@ -7,7 +7,7 @@
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expressions::value::Value;
 use crate::robot::joint;
-use crate::robot::joint_shape::variable_name;
+use crate::robot::joint::shape::variable_name;
 use crate::robot::model::{BodyIndex, Joint, Leg, Motor, MotorTerm};
 use crate::robot::motor;
 use crate::robot::shape::Shape;

@@ -1,6 +1,6 @@
 //! MJCF: the elements and attributes of MuJoCo's XML reference, up to version 4.
 
-use super::table::{Rule, Table, Treatment, rejected, reported, unless};
+use super::table::{Rule, Table, Treatment, rejected, reported, rule, unless, whole};
 use Treatment::{Container, Honoured, Irrelevant};
 
 const APPEARANCE: Treatment = Irrelevant("appearance");
@@ -88,24 +88,14 @@ const ACTUATOR: &[(&str, Treatment)] = &[
 ];
 
 const RULES: &[Rule] = &[
-    Rule {
-        within: "",
-        elements: "mujoco",
-        treatment: Honoured,
-        attributes: &[("model", Honoured)],
-    },
-    Rule {
-        // Allowed in any element; replaced by the elements of the included file.
-        within: "",
-        elements: "include",
-        treatment: Honoured,
-        attributes: &[("file", Honoured)],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "compiler",
-        treatment: Honoured,
-        attributes: &[
+    rule("", "mujoco", Honoured, &[("model", Honoured)]),
+    // Allowed in any element; replaced by the elements of the included file.
+    rule("", "include", Honoured, &[("file", Honoured)]),
+    rule(
+        "mujoco",
+        "compiler",
+        Honoured,
+        &[
             (
                 "angle eulerseq coordinate autolimits inertiafromgeom inertiagrouprange \
                  settotalmass boundmass boundinertia balanceinertia fusestatic assetdir meshdir strippath",
@@ -121,18 +111,13 @@ const RULES: &[Rule] = &[
                 reported("removed from MJCF: write inertia=\"exact\" at the <mesh>"),
             ),
         ],
-    },
-    Rule {
-        within: "compiler",
-        elements: "lengthrange",
-        treatment: CONTROL,
-        attributes: &[],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "option",
-        treatment: Honoured,
-        attributes: &[
+    ),
+    whole("compiler", "lengthrange", CONTROL),
+    rule(
+        "mujoco",
+        "option",
+        Honoured,
+        &[
             ("gravity", Honoured),
             (
                 "density",
@@ -155,12 +140,12 @@ const RULES: &[Rule] = &[
                 SIMULATION,
             ),
         ],
-    },
-    Rule {
-        within: "option",
-        elements: "flag",
-        treatment: Honoured,
-        attributes: &[
+    ),
+    rule(
+        "option",
+        "flag",
+        Honoured,
+        &[
             ("gravity", Honoured),
             (
                 "constraint equality spring damper passive frictionloss",
@@ -173,156 +158,77 @@ const RULES: &[Rule] = &[
                 SIMULATION,
             ),
         ],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "size statistic custom",
-        treatment: SIMULATION,
-        attributes: &[],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "visual",
-        treatment: APPEARANCE,
-        attributes: &[],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "asset",
-        treatment: Honoured,
-        attributes: &[],
-    },
-    Rule {
-        within: "asset default",
-        elements: "mesh",
-        treatment: Honoured,
-        attributes: MESH,
-    },
-    Rule {
-        within: "asset",
-        elements: "hfield skin texture material",
-        treatment: APPEARANCE,
-        attributes: &[],
-    },
-    Rule {
-        within: "asset",
-        elements: "model",
-        treatment: Irrelevant("acts with `attach`, which is rejected"),
-        attributes: &[],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "contact",
-        treatment: CONTACT,
-        attributes: &[],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "sensor",
-        treatment: Irrelevant("sensors"),
-        attributes: &[],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "keyframe",
-        treatment: Irrelevant("its positions are a start for the home of robots with loops"),
-        attributes: &[],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "extension",
-        treatment: Irrelevant("plugins are reported where they act"),
-        attributes: &[],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "tendon",
-        treatment: Honoured,
-        attributes: &[],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "deformable",
-        treatment: Container,
-        attributes: &[],
-    },
-    Rule {
-        within: "tendon",
-        elements: "spatial fixed",
-        treatment: Honoured,
-        attributes: TENDON,
-    },
-    Rule {
-        within: "spatial",
-        elements: "site",
-        treatment: Honoured,
-        attributes: &[("site", Honoured)],
-    },
-    Rule {
-        within: "spatial",
-        elements: "geom pulley",
-        treatment: Honoured,
-        attributes: &[(
+    ),
+    whole("mujoco", "size statistic custom", SIMULATION),
+    whole("mujoco", "visual", APPEARANCE),
+    whole("mujoco", "asset", Honoured),
+    rule("asset default", "mesh", Honoured, MESH),
+    whole("asset", "hfield skin texture material", APPEARANCE),
+    whole(
+        "asset",
+        "model",
+        Irrelevant("acts with `attach`, which is rejected"),
+    ),
+    whole("mujoco", "contact", CONTACT),
+    whole("mujoco", "sensor", Irrelevant("sensors")),
+    whole(
+        "mujoco",
+        "keyframe",
+        Irrelevant("its positions are a start for the home of robots with loops"),
+    ),
+    whole(
+        "mujoco",
+        "extension",
+        Irrelevant("plugins are reported where they act"),
+    ),
+    whole("mujoco", "tendon", Honoured),
+    whole("mujoco", "deformable", Container),
+    rule("tendon", "spatial fixed", Honoured, TENDON),
+    rule("spatial", "site", Honoured, &[("site", Honoured)]),
+    rule(
+        "spatial",
+        "geom pulley",
+        Honoured,
+        &[(
             "geom sidesite divisor",
             Irrelevant("a tendon with such a path is rejected if it exerts forces"),
         )],
-    },
-    Rule {
-        within: "fixed",
-        elements: "joint",
-        treatment: Honoured,
-        attributes: &[("joint coef", Honoured)],
-    },
-    Rule {
-        within: "deformable",
-        elements: "flex",
-        treatment: rejected("deformable bodies are not supported", "remove it"),
-        attributes: &[],
-    },
-    Rule {
-        within: "deformable",
-        elements: "skin",
-        treatment: APPEARANCE,
-        attributes: &[],
-    },
-    Rule {
-        within: "mujoco default",
-        elements: "default",
-        treatment: Honoured,
-        attributes: &[("class", Honoured)],
-    },
-    Rule {
-        within: "default",
-        elements: "texture material camera light pair",
-        treatment: APPEARANCE,
-        attributes: &[],
-    },
-    Rule {
-        within: "default",
-        elements: "tendon",
-        treatment: Honoured,
-        attributes: TENDON,
-    },
-    Rule {
-        within: "default",
-        elements: "equality",
-        treatment: Honoured,
-        attributes: &[("active", Honoured), ("solimp solref", SOFTNESS)],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "worldbody",
-        treatment: Honoured,
-        attributes: &[
+    ),
+    rule("fixed", "joint", Honoured, &[("joint coef", Honoured)]),
+    whole(
+        "deformable",
+        "flex",
+        rejected("deformable bodies are not supported", "remove it"),
+    ),
+    whole("deformable", "skin", APPEARANCE),
+    rule(
+        "mujoco default",
+        "default",
+        Honoured,
+        &[("class", Honoured)],
+    ),
+    whole("default", "texture material camera light pair", APPEARANCE),
+    rule("default", "tendon", Honoured, TENDON),
+    rule(
+        "default",
+        "equality",
+        Honoured,
+        &[("active", Honoured), ("solimp solref", SOFTNESS)],
+    ),
+    rule(
+        "mujoco",
+        "worldbody",
+        Honoured,
+        &[
             ("childclass", Honoured),
             ("name pos quat axisangle xyaxes zaxis euler user", NAMES),
         ],
-    },
-    Rule {
-        within: BODIES,
-        elements: "body",
-        treatment: Honoured,
-        attributes: &[
+    ),
+    rule(
+        BODIES,
+        "body",
+        Honoured,
+        &[
             ("name childclass", Honoured),
             POSE,
             ("gravcomp", Honoured),
@@ -335,24 +241,24 @@ const RULES: &[Rule] = &[
             ),
             ("fuse simple sleep user", SIMULATION),
         ],
-    },
-    Rule {
-        within: BODIES,
-        elements: "frame",
-        treatment: Honoured,
-        attributes: &[("childclass", Honoured), POSE, ("name", NAMES)],
-    },
-    Rule {
-        within: "body frame",
-        elements: "inertial",
-        treatment: Honoured,
-        attributes: &[POSE, ("mass diaginertia fullinertia", Honoured)],
-    },
-    Rule {
-        within: "body frame default",
-        elements: "joint",
-        treatment: Honoured,
-        attributes: &[
+    ),
+    rule(
+        BODIES,
+        "frame",
+        Honoured,
+        &[("childclass", Honoured), POSE, ("name", NAMES)],
+    ),
+    rule(
+        "body frame",
+        "inertial",
+        Honoured,
+        &[POSE, ("mass diaginertia fullinertia", Honoured)],
+    ),
+    rule(
+        "body frame default",
+        "joint",
+        Honoured,
+        &[
             (
                 "name class type pos axis range limited ref springref stiffness damping \
                  frictionloss armature springdamper",
@@ -370,18 +276,18 @@ const RULES: &[Rule] = &[
             ),
             ("group user", NAMES),
         ],
-    },
-    Rule {
-        within: "body frame",
-        elements: "freejoint",
-        treatment: Honoured,
-        attributes: &[("name", Honoured), ("group align", NAMES)],
-    },
-    Rule {
-        within: BODIES_OR_DEFAULT,
-        elements: "geom",
-        treatment: Honoured,
-        attributes: &[
+    ),
+    rule(
+        "body frame",
+        "freejoint",
+        Honoured,
+        &[("name", Honoured), ("group align", NAMES)],
+    ),
+    rule(
+        BODIES_OR_DEFAULT,
+        "geom",
+        Honoured,
+        &[
             POSE,
             (
                 "class type size fromto mass density group shellinertia mesh",
@@ -401,12 +307,12 @@ const RULES: &[Rule] = &[
                 CONTACT,
             ),
         ],
-    },
-    Rule {
-        within: BODIES_OR_DEFAULT,
-        elements: "site",
-        treatment: Honoured,
-        attributes: &[
+    ),
+    rule(
+        BODIES_OR_DEFAULT,
+        "site",
+        Honoured,
+        &[
             ("name class", Honoured),
             POSE,
             (
@@ -415,113 +321,85 @@ const RULES: &[Rule] = &[
             ),
             ("group material mesh rgba size type user", APPEARANCE),
         ],
-    },
-    Rule {
-        within: BODIES,
-        elements: "camera light",
-        treatment: APPEARANCE,
-        attributes: &[],
-    },
-    Rule {
-        within: "body frame geom mesh",
-        elements: "plugin",
-        treatment: reported("forces and shapes of plugins are missing from the model"),
-        attributes: &[],
-    },
-    Rule {
-        within: BODIES,
-        elements: "flexcomp composite",
-        treatment: reported("the bodies that it represents are missing from the model"),
-        attributes: &[],
-    },
-    Rule {
-        within: BODIES,
-        elements: "attach replicate",
-        treatment: rejected("copies of bodies are not supported", WRITE_OUT),
-        attributes: &[],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "equality actuator",
-        treatment: Honoured,
-        attributes: &[],
-    },
-    Rule {
-        within: "equality",
-        elements: "connect",
-        treatment: Honoured,
-        attributes: &[
+    ),
+    whole(BODIES, "camera light", APPEARANCE),
+    whole(
+        "body frame geom mesh",
+        "plugin",
+        reported("forces and shapes of plugins are missing from the model"),
+    ),
+    whole(
+        BODIES,
+        "flexcomp composite",
+        reported("the bodies that it represents are missing from the model"),
+    ),
+    whole(
+        BODIES,
+        "attach replicate",
+        rejected("copies of bodies are not supported", WRITE_OUT),
+    ),
+    whole("mujoco", "equality actuator", Honoured),
+    rule(
+        "equality",
+        "connect",
+        Honoured,
+        &[
             ("name class active body1 body2 site1 site2 anchor", Honoured),
             ("solref solimp", SOFTNESS),
         ],
-    },
-    Rule {
-        within: "equality",
-        elements: "weld",
-        treatment: Honoured,
-        attributes: &[
+    ),
+    rule(
+        "equality",
+        "weld",
+        Honoured,
+        &[
             (
                 "name class active body1 body2 site1 site2 anchor relpose",
                 Honoured,
             ),
             ("torquescale solref solimp", SOFTNESS),
         ],
-    },
-    Rule {
-        within: "equality",
-        elements: "joint",
-        treatment: Honoured,
-        attributes: &[
+    ),
+    rule(
+        "equality",
+        "joint",
+        Honoured,
+        &[
             ("name class active joint1 joint2 polycoef", Honoured),
             ("solref solimp", SOFTNESS),
         ],
-    },
-    Rule {
-        within: "equality",
-        elements: "tendon",
-        treatment: Honoured,
-        attributes: &[
+    ),
+    rule(
+        "equality",
+        "tendon",
+        Honoured,
+        &[
             ("class active tendon1 tendon2 polycoef", Honoured),
             ("name", NAMES),
             ("solref solimp", SOFTNESS),
         ],
-    },
-    Rule {
-        // Rejected by name if active.
-        within: "equality",
-        elements: "flex flexvert flexstrain distance",
-        treatment: Honoured,
-        attributes: &[
+    ),
+    // Rejected by name if active.
+    rule(
+        "equality",
+        "flex flexvert flexstrain distance",
+        Honoured,
+        &[
             ("class active", Honoured),
             (
                 "name flex cell geom1 geom2 distance solref solimp",
                 SOFTNESS,
             ),
         ],
-    },
-    Rule {
-        within: "actuator default",
-        elements: "general motor position velocity intvelocity orientation pid damper cylinder muscle \
+    ),
+    rule(
+        "actuator default",
+        "general motor position velocity intvelocity orientation pid damper cylinder muscle \
                    dcmotor plugin",
-        treatment: Honoured,
-        attributes: ACTUATOR,
-    },
-    Rule {
-        within: "default",
-        elements: "adhesion",
-        treatment: Honoured,
-        attributes: ACTUATOR,
-    },
-    Rule {
-        within: "actuator",
-        elements: "adhesion",
-        treatment: CONTACT,
-        attributes: &[],
-    },
-    Rule {
-        within: "plugin",
-        elements: "config",
-        treatment: CONTROL,
-        attributes: &[],
-    },
+        Honoured,
+        ACTUATOR,
+    ),
+    rule("default", "adhesion", Honoured, ACTUATOR),
+    whole("actuator", "adhesion", CONTACT),
+    whole("plugin", "config", CONTROL),
 ];

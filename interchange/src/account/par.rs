@@ -1,16 +1,16 @@
 //! Table of .par files (OpenSYMORO): keys in capitals.
 
-use super::table::{IDENTITY, Rule, Table, Treatment, unless};
+use super::table::{IDENTITY, Table, Treatment, rule, unless};
 use Treatment::{Honoured, Irrelevant};
 
 const BASE: &str = "the base is fixed at its position in the model";
 
 pub(crate) const TABLE: Table = Table {
-    rules: &[Rule {
-        within: "",
-        elements: "par",
-        treatment: Honoured,
-        attributes: &[
+    rules: &[rule(
+        "",
+        "par",
+        Honoured,
+        &[
             (
                 "NL NJ NF ANT SIGMA B D R GAMMA ALPHA MU THETA XX XY XZ YY YZ ZZ MX MY MZ M IA FV FS G \
                  IS_FLOATING IS_MOBILE",
@@ -35,7 +35,7 @@ pub(crate) const TABLE: Table = Table {
             ("W0 WP0 V0 VP0", unless("0", BASE)),
             ("Z", unless(IDENTITY, BASE)),
         ],
-    }],
+    )],
     repeatable: "",
     texts: "",
 };

@@ -1,6 +1,6 @@
 //! Table of SDFormat 1.4 to 1.12: elements and attributes of its specification.
 
-use super::table::{Rule, Table, Treatment, rejected, reported, unless};
+use super::table::{Rule, Table, Treatment, rejected, reported, rule, unless, whole};
 use Treatment::{Container, Honoured, Irrelevant, Opaque};
 
 const APPEARANCE: Treatment = Irrelevant("appearance");
@@ -24,37 +24,17 @@ const fn text(within: &'static str, elements: &'static str) -> Rule {
     whole(within, elements, Honoured)
 }
 
-/// An element without attributes of its own.
-const fn whole(within: &'static str, elements: &'static str, treatment: Treatment) -> Rule {
-    Rule {
-        within,
-        elements,
-        treatment,
-        attributes: &[],
-    }
-}
-
 const RULES: &[Rule] = &[
-    Rule {
-        within: "",
-        elements: "sdf gazebo",
-        treatment: Honoured,
-        attributes: &[("version", Honoured)],
-    },
-    Rule {
-        within: "sdf gazebo",
-        elements: "world",
-        treatment: Honoured,
-        attributes: &[("name", SIMULATION)],
-    },
+    rule("", "sdf gazebo", Honoured, &[("version", Honoured)]),
+    rule("sdf gazebo", "world", Honoured, &[("name", SIMULATION)]),
     text("world link physics", "gravity"),
-    Rule {
-        // Has gravity up to SDFormat 1.5.
-        within: "world",
-        elements: "physics",
-        treatment: Honoured,
-        attributes: &[("name default type", SIMULATION)],
-    },
+    // Has gravity up to SDFormat 1.5.
+    rule(
+        "world",
+        "physics",
+        Honoured,
+        &[("name default type", SIMULATION)],
+    ),
     whole("sdf gazebo", "physics", SIMULATION),
     whole(
         "physics",
@@ -77,12 +57,12 @@ const RULES: &[Rule] = &[
         "plugin",
         reported("plugins are not read, nor forces that they exert"),
     ),
-    Rule {
-        within: "sdf gazebo world model",
-        elements: "model",
-        treatment: Honoured,
-        attributes: &[("name placement_frame canonical_link", Honoured)],
-    },
+    rule(
+        "sdf gazebo world model",
+        "model",
+        Honoured,
+        &[("name placement_frame canonical_link", Honoured)],
+    ),
     text("model include", "static"),
     whole("model", "self_collide", CONTACT),
     whole("model", "allow_auto_disable gripper", SIMULATION),
@@ -94,18 +74,18 @@ const RULES: &[Rule] = &[
             "the force of the wind is missing from the model",
         ),
     ),
-    Rule {
-        within: "model include",
-        elements: "plugin",
-        treatment: Opaque,
-        attributes: &[("name filename", Honoured)],
-    },
-    Rule {
-        within: "sdf gazebo world model",
-        elements: "include",
-        treatment: Honoured,
-        attributes: &[("merge", Honoured)],
-    },
+    rule(
+        "model include",
+        "plugin",
+        Opaque,
+        &[("name filename", Honoured)],
+    ),
+    rule(
+        "sdf gazebo world model",
+        "include",
+        Honoured,
+        &[("merge", Honoured)],
+    ),
     text("include", "uri name placement_frame"),
     whole(
         "include",
@@ -115,30 +95,20 @@ const RULES: &[Rule] = &[
             "expand the model with `gz sdf -p FILE`",
         ),
     ),
-    Rule {
-        within: "model include link joint frame inertial",
-        elements: "pose",
-        treatment: Honoured,
-        attributes: &[("relative_to frame degrees rotation_format", Honoured)],
-    },
-    Rule {
-        within: "world model",
-        elements: "frame",
-        treatment: Honoured,
-        attributes: &[("name attached_to", Honoured)],
-    },
-    Rule {
-        within: "model",
-        elements: "link",
-        treatment: Honoured,
-        attributes: &[("name", Honoured)],
-    },
-    Rule {
-        within: "link",
-        elements: "inertial",
-        treatment: Honoured,
-        attributes: &[("auto", Honoured)],
-    },
+    rule(
+        "model include link joint frame inertial",
+        "pose",
+        Honoured,
+        &[("relative_to frame degrees rotation_format", Honoured)],
+    ),
+    rule(
+        "world model",
+        "frame",
+        Honoured,
+        &[("name attached_to", Honoured)],
+    ),
+    rule("model", "link", Honoured, &[("name", Honoured)]),
+    rule("link", "inertial", Honoured, &[("auto", Honoured)]),
     text("inertial", "mass inertia"),
     text("inertia", "ixx ixy ixz iyy iyz izz"),
     whole(
@@ -176,23 +146,13 @@ const RULES: &[Rule] = &[
     ),
     whole("link joint", "sensor", SENSORS),
     whole("link", "must_be_base_link battery", SIMULATION),
-    Rule {
-        within: "world model",
-        elements: "joint",
-        treatment: Honoured,
-        attributes: &[("name type", Honoured)],
-    },
+    rule("world model", "joint", Honoured, &[("name type", Honoured)]),
     text(
         "joint",
         "parent child gearbox_ratio gearbox_reference_body thread_pitch screw_thread_pitch axis axis2",
     ),
     whole("joint", "physics", SIMULATION),
-    Rule {
-        within: "axis axis2",
-        elements: "xyz",
-        treatment: Honoured,
-        attributes: &[("expressed_in", Honoured)],
-    },
+    rule("axis axis2", "xyz", Honoured, &[("expressed_in", Honoured)]),
     text("axis axis2", "use_parent_model_frame dynamics limit"),
     whole(
         "axis axis2",
@@ -205,13 +165,13 @@ const RULES: &[Rule] = &[
     ),
     text("limit", "lower upper velocity"),
     whole("limit", "effort stiffness dissipation", LIMITS),
-    Rule {
-        within: "axis axis2",
-        elements: "mimic",
-        treatment: Honoured,
-        // Factor and offset are attributes in `<drake:mimic>`.
-        attributes: &[("joint axis multiplier offset", Honoured)],
-    },
+    // Factor and offset are attributes in `<drake:mimic>`.
+    rule(
+        "axis axis2",
+        "mimic",
+        Honoured,
+        &[("joint axis multiplier offset", Honoured)],
+    ),
     // Drake.
     text("joint", "rotor_inertia gear_ratio"),
     whole("joint", "controller_gains", SIMULATION),

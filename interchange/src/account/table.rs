@@ -136,6 +136,30 @@ impl Rule {
     }
 }
 
+/// Treatment of elements and of their attributes, see [`Rule`].
+pub(super) const fn rule(
+    within: &'static str,
+    elements: &'static str,
+    treatment: Treatment,
+    attributes: &'static [(&'static str, Treatment)],
+) -> Rule {
+    Rule {
+        within,
+        elements,
+        treatment,
+        attributes,
+    }
+}
+
+/// Treatment of elements without attributes of their own.
+pub(super) const fn whole(
+    within: &'static str,
+    elements: &'static str,
+    treatment: Treatment,
+) -> Rule {
+    rule(within, elements, treatment, &[])
+}
+
 /// Treatment of a value that changes the model unless it is neutral.
 pub(super) const fn unless(neutral: &'static str, reason: &'static str) -> Treatment {
     Treatment::Reported { neutral, reason }

@@ -1,6 +1,8 @@
 //! Table of URDF: urdfdom, loop notations, and the extensions of Gazebo, ROS 2 control and Drake.
 
-use super::table::{Rule, Table, Treatment, USUAL_GRAVITY, rejected, reported, unless};
+use super::table::{
+    Rule, Table, Treatment, USUAL_GRAVITY, rejected, reported, rule, unless, whole,
+};
 use Treatment::{Container, Honoured, Irrelevant};
 
 const APPEARANCE: Treatment = Irrelevant("appearance");
@@ -21,512 +23,350 @@ pub(crate) const TABLE: Table = Table {
 };
 
 const RULES: &[Rule] = &[
-    Rule {
-        within: "",
-        elements: "robot",
-        treatment: Honoured,
-        attributes: &[("name", Honoured), ("version", SIMULATION)],
-    },
-    Rule {
-        within: "robot",
-        elements: "material",
-        treatment: APPEARANCE,
-        attributes: &[],
-    },
-    Rule {
-        within: "robot",
-        elements: "link",
-        treatment: Honoured,
-        attributes: &[("name", Honoured), ("type", APPEARANCE)],
-    },
-    Rule {
-        within: "link",
-        elements: "visual visual_material",
-        treatment: APPEARANCE,
-        attributes: &[],
-    },
-    Rule {
-        within: "link",
-        elements: "collision collision_checking self_collision_checking contact",
-        treatment: CONTACT,
-        attributes: &[],
-    },
-    Rule {
-        within: "link",
-        elements: "inertial",
-        treatment: Honoured,
-        attributes: &[],
-    },
-    Rule {
-        within: "inertial",
-        elements: "mass",
-        treatment: Honoured,
-        attributes: &[("value", Honoured)],
-    },
-    Rule {
-        within: "inertial",
-        elements: "inertia",
-        treatment: Honoured,
-        attributes: &[("ixx ixy ixz iyy iyz izz", Honoured)],
-    },
-    Rule {
-        within: "inertial joint predecessor successor link1 link2",
-        elements: "origin",
-        treatment: Honoured,
-        attributes: &[POSE],
-    },
-    Rule {
-        within: "robot",
-        elements: "joint",
-        treatment: Honoured,
-        attributes: &[("name type", Honoured)],
-    },
-    Rule {
-        within: "joint constraint",
-        elements: "parent child",
-        treatment: Honoured,
-        attributes: &[("link", Honoured)],
-    },
-    Rule {
-        within: "joint loop constraint loop_joint",
-        elements: "axis",
-        treatment: Honoured,
-        attributes: &[("xyz", Honoured)],
-    },
-    Rule {
-        within: "joint",
-        elements: "dynamics",
-        treatment: Honoured,
-        attributes: &[
+    rule(
+        "",
+        "robot",
+        Honoured,
+        &[("name", Honoured), ("version", SIMULATION)],
+    ),
+    whole("robot", "material", APPEARANCE),
+    rule(
+        "robot",
+        "link",
+        Honoured,
+        &[("name", Honoured), ("type", APPEARANCE)],
+    ),
+    whole("link", "visual visual_material", APPEARANCE),
+    whole(
+        "link",
+        "collision collision_checking self_collision_checking contact",
+        CONTACT,
+    ),
+    whole("link", "inertial", Honoured),
+    rule("inertial", "mass", Honoured, &[("value", Honoured)]),
+    rule(
+        "inertial",
+        "inertia",
+        Honoured,
+        &[("ixx ixy ixz iyy iyz izz", Honoured)],
+    ),
+    rule(
+        "inertial joint predecessor successor link1 link2",
+        "origin",
+        Honoured,
+        &[POSE],
+    ),
+    rule("robot", "joint", Honoured, &[("name type", Honoured)]),
+    rule(
+        "joint constraint",
+        "parent child",
+        Honoured,
+        &[("link", Honoured)],
+    ),
+    rule(
+        "joint loop constraint loop_joint",
+        "axis",
+        Honoured,
+        &[("xyz", Honoured)],
+    ),
+    rule(
+        "joint",
+        "dynamics",
+        Honoured,
+        &[
             ("damping friction", Honoured),
             (
                 "spring_stiffness spring_reference stiffness",
                 unless("0", "the spring is missing from the model"),
             ),
         ],
-    },
-    Rule {
-        within: "joint",
-        elements: "limit",
-        treatment: Honoured,
-        attributes: &[
+    ),
+    rule(
+        "joint",
+        "limit",
+        Honoured,
+        &[
             ("lower upper velocity", Honoured),
             ("effort acceleration jerk deceleration", CONTROL),
         ],
-    },
-    Rule {
-        within: "joint",
-        elements: "mimic",
-        treatment: Honoured,
-        attributes: &[("joint multiplier offset", Honoured)],
-    },
-    Rule {
-        within: "joint",
-        elements: "safety_controller calibration",
-        treatment: CONTROL,
-        attributes: &[],
-    },
-    Rule {
-        // Extension of onshape-to-robot.
-        within: "joint",
-        elements: "joint_properties",
-        treatment: Container,
-        attributes: &[(
+    ),
+    rule(
+        "joint",
+        "mimic",
+        Honoured,
+        &[("joint multiplier offset", Honoured)],
+    ),
+    whole("joint", "safety_controller calibration", CONTROL),
+    // Extension of onshape-to-robot.
+    rule(
+        "joint",
+        "joint_properties",
+        Container,
+        &[(
             "friction damping armature stiffness",
             unless("0", "missing from the model: write it in <dynamics>"),
         )],
-    },
-    Rule {
-        within: "robot",
-        elements: "sensor",
-        treatment: Irrelevant("sensors"),
-        attributes: &[],
-    },
+    ),
+    whole("robot", "sensor", Irrelevant("sensors")),
     // Loop closures.
-    Rule {
-        within: "robot",
-        elements: "loop",
-        treatment: Honoured,
-        attributes: &[("name type", Honoured)],
-    },
-    Rule {
-        within: "loop coupling",
-        elements: "predecessor successor",
-        treatment: Honoured,
-        attributes: &[("link", Honoured), POSE],
-    },
-    Rule {
-        within: "robot",
-        elements: "constraint",
-        treatment: Honoured,
-        attributes: &[("name type", Honoured)],
-    },
-    Rule {
-        within: "constraint",
-        elements: "parent_origin child_origin",
-        treatment: Honoured,
-        attributes: &[POSE],
-    },
-    Rule {
-        within: "constraint loop loop_joint",
-        elements: "parent_axis child_axis",
-        treatment: Honoured,
-        attributes: &[("xyz", Honoured)],
-    },
-    Rule {
-        within: "robot",
-        elements: "loop_joint",
-        treatment: Honoured,
-        attributes: &[("name type", Honoured)],
-    },
-    Rule {
-        within: "loop_joint",
-        elements: "link1 link2",
-        treatment: Honoured,
-        attributes: &[("link", Honoured), POSE],
-    },
-    Rule {
-        within: "robot",
-        elements: "coupling",
-        treatment: Honoured,
-        attributes: &[("name", CONTROL)],
-    },
-    Rule {
-        within: "coupling",
-        elements: "ratio",
-        treatment: Honoured,
-        attributes: &[("value", Honoured)],
-    },
+    rule("robot", "loop", Honoured, &[("name type", Honoured)]),
+    rule(
+        "loop coupling",
+        "predecessor successor",
+        Honoured,
+        &[("link", Honoured), POSE],
+    ),
+    rule("robot", "constraint", Honoured, &[("name type", Honoured)]),
+    rule(
+        "constraint",
+        "parent_origin child_origin",
+        Honoured,
+        &[POSE],
+    ),
+    rule(
+        "constraint loop loop_joint",
+        "parent_axis child_axis",
+        Honoured,
+        &[("xyz", Honoured)],
+    ),
+    rule("robot", "loop_joint", Honoured, &[("name type", Honoured)]),
+    rule(
+        "loop_joint",
+        "link1 link2",
+        Honoured,
+        &[("link", Honoured), POSE],
+    ),
+    rule("robot", "coupling", Honoured, &[("name", CONTROL)]),
+    rule("coupling", "ratio", Honoured, &[("value", Honoured)]),
     // ROS transmissions, also inside `<ros2_control>`.
-    Rule {
-        within: "robot",
-        elements: "transmission",
-        treatment: Honoured,
-        attributes: &[("name", CONTROL), ("type", Honoured)],
-    },
-    Rule {
-        within: "ros2_control",
-        elements: "transmission",
-        treatment: Honoured,
-        attributes: &[("name", CONTROL)],
-    },
-    Rule {
-        within: "transmission",
-        elements: "type plugin",
-        treatment: Honoured,
-        attributes: &[],
-    },
-    Rule {
-        within: "transmission",
-        elements: "joint",
-        treatment: Honoured,
-        attributes: &[("name role", Honoured)],
-    },
-    Rule {
-        within: "transmission",
-        elements: "actuator",
-        treatment: Honoured,
-        attributes: &[("name role", Honoured)],
-    },
-    Rule {
-        within: "transmission joint actuator",
-        elements: "mechanicalReduction mechanical_reduction",
-        treatment: Honoured,
-        attributes: &[],
-    },
-    Rule {
-        within: "transmission joint actuator",
-        elements: "hardwareInterface motorTorqueConstant encoder_resolution controller_gains",
-        treatment: CONTROL,
-        attributes: &[],
-    },
-    Rule {
-        within: "joint actuator",
-        elements: "role",
-        treatment: Honoured,
-        attributes: &[],
-    },
-    Rule {
-        within: "transmission joint",
-        elements: "offset",
-        treatment: CONTROL,
-        attributes: &[],
-    },
-    Rule {
-        // PR2 transmissions.
-        within: "transmission",
-        elements: "leftActuator rightActuator flexJoint rollJoint gap_joint compensator simulated_actuated_joint \
+    rule(
+        "robot",
+        "transmission",
+        Honoured,
+        &[("name", CONTROL), ("type", Honoured)],
+    ),
+    rule(
+        "ros2_control",
+        "transmission",
+        Honoured,
+        &[("name", CONTROL)],
+    ),
+    whole("transmission", "type plugin", Honoured),
+    rule(
+        "transmission",
+        "joint",
+        Honoured,
+        &[("name role", Honoured)],
+    ),
+    rule(
+        "transmission",
+        "actuator",
+        Honoured,
+        &[("name role", Honoured)],
+    ),
+    whole(
+        "transmission joint actuator",
+        "mechanicalReduction mechanical_reduction",
+        Honoured,
+    ),
+    whole(
+        "transmission joint actuator",
+        "hardwareInterface motorTorqueConstant encoder_resolution controller_gains",
+        CONTROL,
+    ),
+    whole("joint actuator", "role", Honoured),
+    whole("transmission joint", "offset", CONTROL),
+    // PR2 transmissions.
+    whole(
+        "transmission",
+        "leftActuator rightActuator flexJoint rollJoint gap_joint compensator simulated_actuated_joint \
                    use_simulated_gripper_joint",
-        treatment: rejected(
+        rejected(
             "transmissions that couple several joints are not supported",
             COUPLED_MOTORS,
         ),
-        attributes: &[],
-    },
-    Rule {
-        within: "actuator",
-        elements: "rotor_inertia gear_ratio",
-        treatment: Honoured,
-        attributes: &[("value", Honoured)],
-    },
-    Rule {
-        within: "robot",
-        elements: "ros2_control",
-        treatment: Honoured,
-        attributes: &[("name type rw_rate is_async", CONTROL)],
-    },
-    Rule {
-        within: "ros2_control",
-        elements: "hardware gpio sensor",
-        treatment: CONTROL,
-        attributes: &[],
-    },
-    Rule {
-        within: "ros2_control",
-        elements: "joint",
-        treatment: reported(
+    ),
+    rule(
+        "actuator",
+        "rotor_inertia gear_ratio",
+        Honoured,
+        &[("value", Honoured)],
+    ),
+    rule(
+        "robot",
+        "ros2_control",
+        Honoured,
+        &[("name type rw_rate is_async", CONTROL)],
+    ),
+    whole("ros2_control", "hardware gpio sensor", CONTROL),
+    whole(
+        "ros2_control",
+        "joint",
+        reported(
             "not read: motors are those of <transmission>, of a YAML file next to the URDF, or of `--actuated`",
         ),
-        attributes: &[],
-    },
-    Rule {
-        within: "robot",
-        elements: "gazebo",
-        treatment: Honoured,
-        attributes: &[("reference", SIMULATION)],
-    },
+    ),
+    rule("robot", "gazebo", Honoured, &[("reference", SIMULATION)]),
     // Joints of <gazebo> are in SDFormat and close loops.
-    Rule {
-        within: "gazebo",
-        elements: "joint",
-        treatment: Honoured,
-        attributes: &[("name type", Honoured)],
-    },
-    Rule {
-        within: "gazebo/joint",
-        elements: "parent child",
-        treatment: Honoured,
-        attributes: &[],
-    },
-    Rule {
-        within: "gazebo/joint",
-        elements: "pose",
-        treatment: Honoured,
-        attributes: &[(
+    rule("gazebo", "joint", Honoured, &[("name type", Honoured)]),
+    whole("gazebo/joint", "parent child", Honoured),
+    rule(
+        "gazebo/joint",
+        "pose",
+        Honoured,
+        &[(
             "relative_to frame degrees rotation_format",
             rejected(
                 "only poses relative to the child link, with roll, pitch and yaw in rad, are supported",
                 "write the pose in the frame of the child link",
             ),
         )],
-    },
-    Rule {
-        within: "gazebo/joint",
-        elements: "axis",
-        treatment: Honoured,
-        attributes: &[],
-    },
-    Rule {
-        within: "joint/axis",
-        elements: "xyz",
-        treatment: Honoured,
-        attributes: &[(
+    ),
+    whole("gazebo/joint", "axis", Honoured),
+    rule(
+        "joint/axis",
+        "xyz",
+        Honoured,
+        &[(
             "expressed_in",
             rejected(
                 "only axes in the frame of the joint are supported",
                 "write the axis in the frame of the joint",
             ),
         )],
-    },
-    Rule {
-        within: "joint/axis",
-        elements: "use_parent_model_frame",
-        treatment: Treatment::Rejected {
+    ),
+    whole(
+        "joint/axis",
+        "use_parent_model_frame",
+        Treatment::Rejected {
             neutral: "false False 0",
             reason: "only axes in the frame of the joint are supported",
             help: "write the axis in the frame of the joint",
         },
-        attributes: &[],
-    },
-    Rule {
-        within: "joint/axis",
-        elements: "limit initial_position",
-        treatment: Irrelevant("limits and settings of a joint that closes a loop"),
-        attributes: &[],
-    },
-    Rule {
-        within: "joint/axis",
-        elements: "dynamics",
-        treatment: Container,
-        attributes: &[],
-    },
-    Rule {
-        within: "axis/dynamics",
-        elements: "damping friction spring_stiffness",
-        treatment: unless(
+    ),
+    whole(
+        "joint/axis",
+        "limit initial_position",
+        Irrelevant("limits and settings of a joint that closes a loop"),
+    ),
+    whole("joint/axis", "dynamics", Container),
+    whole(
+        "axis/dynamics",
+        "damping friction spring_stiffness",
+        unless(
             "0",
             "torques of joints that close a loop are missing from the model",
         ),
-        attributes: &[],
-    },
-    Rule {
-        within: "axis/dynamics",
-        elements: "spring_reference",
-        treatment: SIMULATION,
-        attributes: &[],
-    },
-    Rule {
-        within: "gazebo/joint",
-        elements: "physics sensor",
-        treatment: SIMULATION,
-        attributes: &[],
-    },
-    Rule {
-        within: "gazebo",
-        elements: "link model include",
-        treatment: rejected(
+    ),
+    whole("axis/dynamics", "spring_reference", SIMULATION),
+    whole("gazebo/joint", "physics sensor", SIMULATION),
+    whole(
+        "gazebo",
+        "link model include",
+        rejected(
             "bodies of <gazebo> are not read from URDF",
             "convert the file by `gz sdf -p FILE` and import the SDFormat",
         ),
-        attributes: &[],
-    },
-    Rule {
-        within: "gazebo",
-        elements: "plugin",
-        treatment: reported("plugins are not read, nor forces that they exert"),
-        attributes: &[],
-    },
-    Rule {
-        within: "gazebo",
-        elements: "springStiffness springReference",
-        treatment: unless("0", "the spring is missing from the model"),
-        attributes: &[],
-    },
-    Rule {
-        within: "gazebo",
-        elements: "turnGravityOff",
-        treatment: unless("false False 0", "gravity acts on the link in the model"),
-        attributes: &[],
-    },
-    Rule {
-        within: "gazebo",
-        elements: "gravity",
-        treatment: unless("true True 1", "gravity acts on the link in the model"),
-        attributes: &[],
-    },
-    Rule {
-        within: "gazebo",
-        elements: "kinematic static",
-        treatment: unless("false False 0", "the robot moves in the model"),
-        attributes: &[],
-    },
-    Rule {
-        within: "gazebo",
-        elements: "pose",
-        treatment: unless(
+    ),
+    whole(
+        "gazebo",
+        "plugin",
+        reported("plugins are not read, nor forces that they exert"),
+    ),
+    whole(
+        "gazebo",
+        "springStiffness springReference",
+        unless("0", "the spring is missing from the model"),
+    ),
+    whole(
+        "gazebo",
+        "turnGravityOff",
+        unless("false False 0", "gravity acts on the link in the model"),
+    ),
+    whole(
+        "gazebo",
+        "gravity",
+        unless("true True 1", "gravity acts on the link in the model"),
+    ),
+    whole(
+        "gazebo",
+        "kinematic static",
+        unless("false False 0", "the robot moves in the model"),
+    ),
+    whole(
+        "gazebo",
+        "pose",
+        unless(
             "0",
             "the base link is at the origin of the world in the model",
         ),
-        attributes: &[],
-    },
-    Rule {
-        within: "gazebo",
-        elements: "velocity_decay",
-        treatment: Container,
-        attributes: &[],
-    },
-    Rule {
-        within: "velocity_decay",
-        elements: "linear angular",
-        treatment: unless("0", "the damping of the body is missing from the model"),
-        attributes: &[],
-    },
-    Rule {
-        within: "gazebo",
-        elements: "dampingFactor",
-        treatment: unless("0", "the damping of the body is missing from the model"),
-        attributes: &[],
-    },
-    Rule {
-        within: "gazebo",
-        elements: "material visual sensor light",
-        treatment: APPEARANCE,
-        attributes: &[],
-    },
-    Rule {
-        within: "gazebo",
-        elements: "mu1 mu2 mu kp kd fdir1 minDepth maxVel maxContacts selfCollide self_collide collision surface \
+    ),
+    whole("gazebo", "velocity_decay", Container),
+    whole(
+        "velocity_decay",
+        "linear angular",
+        unless("0", "the damping of the body is missing from the model"),
+    ),
+    whole(
+        "gazebo",
+        "dampingFactor",
+        unless("0", "the damping of the body is missing from the model"),
+    ),
+    whole("gazebo", "material visual sensor light", APPEARANCE),
+    whole(
+        "gazebo",
+        "mu1 mu2 mu kp kd fdir1 minDepth maxVel maxContacts selfCollide self_collide collision surface \
                    laserRetro disable_fixed_joint_lumping",
-        treatment: CONTACT,
-        attributes: &[],
-    },
-    Rule {
-        within: "gazebo",
-        elements: "preserveFixedJoint disableFixedJointLumping implicitSpringDamper provideFeedback \
+        CONTACT,
+    ),
+    whole(
+        "gazebo",
+        "preserveFixedJoint disableFixedJointLumping implicitSpringDamper provideFeedback \
                    provide_feedback stopCfm stopErp stopKp stopKd fudgeFactor cfmDamping initial_joint_position \
                    enable_wind allow_auto_disable canonicalBody ignition gz",
-        treatment: SIMULATION,
-        attributes: &[],
-    },
-    Rule {
-        within: "robot",
-        elements: "ball_constraint",
-        treatment: Honoured,
-        attributes: &[],
-    },
-    Rule {
-        within: "ball_constraint",
-        elements: "ball_constraint_body_A ball_constraint_body_B",
-        treatment: Honoured,
-        attributes: &[("name", Honoured)],
-    },
-    Rule {
-        within: "ball_constraint",
-        elements: "ball_constraint_p_AP ball_constraint_p_BQ",
-        treatment: Honoured,
-        attributes: &[("value", Honoured)],
-    },
-    Rule {
-        within: "robot",
-        elements: "linear_bushing_rpy",
-        treatment: rejected(
+        SIMULATION,
+    ),
+    whole("robot", "ball_constraint", Honoured),
+    rule(
+        "ball_constraint",
+        "ball_constraint_body_A ball_constraint_body_B",
+        Honoured,
+        &[("name", Honoured)],
+    ),
+    rule(
+        "ball_constraint",
+        "ball_constraint_p_AP ball_constraint_p_BQ",
+        Honoured,
+        &[("value", Honoured)],
+    ),
+    whole(
+        "robot",
+        "linear_bushing_rpy",
+        rejected(
             "bushings close loops by springs and dampers, which is not supported",
             "replace the bushing by a joint: <loop> of type spherical, revolute or fixed",
         ),
-        attributes: &[],
-    },
-    Rule {
-        within: "robot",
-        elements: "distance_constraint tendon_constraint coupler_constraint weld_constraint",
-        treatment: rejected(
+    ),
+    whole(
+        "robot",
+        "distance_constraint tendon_constraint coupler_constraint weld_constraint",
+        rejected(
             "constraints of this kind are not supported",
             "write the loop as <loop> of type spherical, revolute or fixed, and couplings as <mimic>",
         ),
-        attributes: &[],
-    },
-    Rule {
-        within: "robot",
-        elements: "collision_filter_group",
-        treatment: CONTACT,
-        attributes: &[],
-    },
-    Rule {
-        within: "joint",
-        elements: "screw_thread_pitch",
-        treatment: reported("screws are not read from URDF"),
-        attributes: &[],
-    },
-    Rule {
-        within: "robot",
-        elements: "mujoco",
-        treatment: Container,
-        attributes: &[],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "compiler",
-        treatment: Container,
-        attributes: &[
+    ),
+    whole("robot", "collision_filter_group", CONTACT),
+    whole(
+        "joint",
+        "screw_thread_pitch",
+        reported("screws are not read from URDF"),
+    ),
+    whole("robot", "mujoco", Container),
+    rule(
+        "mujoco",
+        "compiler",
+        Container,
+        &[
             (
                 "alignfree angle assetdir autolimits conflict convexhull discardvisual eulerseq fitaabb fusestatic \
                  inertiagrouprange meshdir passthrough savecanonical savecompiled saveinertial strippath texturedir \
@@ -555,12 +395,12 @@ const RULES: &[Rule] = &[
                 ),
             ),
         ],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "option",
-        treatment: Container,
-        attributes: &[
+    ),
+    rule(
+        "mujoco",
+        "option",
+        Container,
+        &[
             (
                 "gravity",
                 unless(USUAL_GRAVITY, "gravity is 9.81 m/s² against z in the model"),
@@ -577,12 +417,12 @@ const RULES: &[Rule] = &[
                 SIMULATION,
             ),
         ],
-    },
-    Rule {
-        within: "option",
-        elements: "flag",
-        treatment: Container,
-        attributes: &[
+    ),
+    rule(
+        "option",
+        "flag",
+        Container,
+        &[
             (
                 "gravity",
                 unless("enable", "gravity is 9.81 m/s² against z in the model"),
@@ -600,11 +440,6 @@ const RULES: &[Rule] = &[
                 SIMULATION,
             ),
         ],
-    },
-    Rule {
-        within: "mujoco",
-        elements: "size",
-        treatment: SIMULATION,
-        attributes: &[],
-    },
+    ),
+    whole("mujoco", "size", SIMULATION),
 ];

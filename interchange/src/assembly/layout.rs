@@ -163,12 +163,8 @@ fn wanted(files: &Files, network: &Network<'_>, names: &[String]) -> Option<Vec<
             Some(at) => found.push(at),
             None => {
                 let all = network.edges.iter().map(|edge| network.edge_name(edge));
-                let near = files.did_you_mean(name, all);
                 let message = format!("there is no joint `{name}` for a coordinate");
-                files.refuse(
-                    message,
-                    near.unwrap_or_else(|| "name moving joints of the file".to_owned()),
-                );
+                files.refuse(message, files.joint_help(name, all));
             }
         }
     }

@@ -9,7 +9,6 @@ mod infinitesimal;
 pub(crate) mod layout;
 pub(crate) mod misfit;
 pub(crate) mod motion;
-mod names;
 mod nearest;
 pub(crate) mod network;
 mod parallel;

@@ -4,12 +4,12 @@ use super::{
     blocks::Blocks,
     infinitesimal,
     motion::{Motion, Open, State, null_space},
-    names::listed,
     platform::Platform,
     simple::{is_free, is_weld},
 };
 use crate::{
     files::Files,
+    listing::listed,
     model::{ClosureKind, Inertia, JointType, Model, PointSpring, Pose},
 };
 use nalgebra::{DMatrix, DVector, Point3, Vector3};

@@ -2,10 +2,10 @@
 
 use super::{
     motion::{Motion, null_space},
-    names::listed,
     network::Network,
 };
 use crate::files::Files;
+use crate::listing::listed;
 use nalgebra::DMatrix;
 
 /// Rates below this fraction of the largest are rounding errors.

@@ -1,9 +1,7 @@
 //! Errors for robots without a skeleton and chains: names the joints that no chain determines.
 
-use super::{
-    names::listed,
-    network::{Network, Origin},
-};
+use super::network::{Network, Origin};
+use crate::listing::listed;
 use crate::{
     files::{Files, Place},
     model::JointType,

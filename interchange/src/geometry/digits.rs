@@ -20,10 +20,12 @@ pub(crate) fn decimal(value: f64) -> String {
 }
 
 /// Shortest decimal within the rounding error relative to `scale`, for numbers of any magnitude.
+///
+/// A value that is not larger than the rounding error is zero.
 #[must_use]
 pub(crate) fn fine(value: f64, scale: f64) -> String {
     let slack = ROUNDING * scale.abs();
-    if value == 0.0 || value.abs() <= slack * 1e-3 {
+    if value.abs() <= slack {
         return "0".to_owned();
     }
     relative(value, slack.min(1e-15 * value.abs()))

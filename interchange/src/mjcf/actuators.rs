@@ -64,8 +64,7 @@ fn actuator(reader: &Reader<'_>, element: &Element, tendons: &mut Tendons, model
     };
     let Some(at) = model.joint_named(joint) else {
         let all = model.joints.iter().map(|joint| joint.name.as_str());
-        let near = files.did_you_mean(joint, all);
-        let help = near.unwrap_or_else(|| "name a joint".to_owned());
+        let help = files.joint_help(joint, all);
         files.report(place, format!("there is no joint `{joint}`"), help);
         return;
     };

@@ -175,8 +175,7 @@ fn read_coupling(reader: &Reader<'_>, element: &Element, model: &Model, coupling
         let found = model.joint_named(name);
         if found.is_none() {
             let all = model.joints.iter().map(|joint| joint.name.as_str());
-            let near = files.did_you_mean(name, all);
-            let help = near.unwrap_or_else(|| "name a joint".to_owned());
+            let help = files.joint_help(name, all);
             files.report(&element.place, format!("there is no joint `{name}`"), help);
         }
         found

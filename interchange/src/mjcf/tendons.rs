@@ -268,8 +268,7 @@ fn path(files: &Files, element: &Element, sites: &Sites) -> Option<Vec<(usize, P
 fn term(files: &Files, element: &Element, model: &Model) -> Option<(usize, f64)> {
     let name = element.required(files, "joint")?;
     let Some(joint) = model.joint_named(name) else {
-        let near = files.did_you_mean(name, model.joints.iter().map(|own| own.name.as_str()));
-        let help = near.unwrap_or_else(|| "name a joint".to_owned());
+        let help = files.joint_help(name, model.joints.iter().map(|own| own.name.as_str()));
         files.report(&element.place, format!("there is no joint `{name}`"), help);
         return None;
     };

@@ -75,8 +75,7 @@ fn moving(files: &Files, joint: &Element, tree: &Tree, model: &Model) -> Option<
         files.record(Use::Ignored, &joint.place, "joint", None, reason);
         return None;
     }
-    let near = files.did_you_mean(name, tree.by_joint.keys().map(String::as_str));
-    let help = near.unwrap_or_else(|| "name a <joint> of the robot".to_owned());
+    let help = files.joint_help(name, tree.by_joint.keys().map(String::as_str));
     files.report(&joint.place, format!("there is no joint `{name}`"), help);
     None
 }

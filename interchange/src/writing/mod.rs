@@ -325,7 +325,10 @@ fn place(text: &mut String, leg: &Leg) {
     }
 }
 
-/// Sizes of a body's moments, below which digits are rounding errors.
+/// Sizes of a body's moments, relative to which digits are rounding errors.
+///
+/// They are at least those of its mass at 1 mm, or at 32 mm for second moments: moments about
+/// another point are differences of such terms.
 struct ParameterSize {
     first: f64,
     second: f64,
@@ -341,7 +344,7 @@ impl ParameterSize {
         let mass = mass.map_or(1.0, |(_, mass)| *mass);
         Self {
             first: largest(&["mx", "my", "mz"]).max(mass * 1e-3),
-            second: largest(&["xx", "xy", "xz", "yy", "yz", "zz"]),
+            second: largest(&["xx", "xy", "xz", "yy", "yz", "zz"]).max(mass * 1e-3),
         }
     }
 

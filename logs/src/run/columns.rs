@@ -103,7 +103,24 @@ impl<'a> Columns<'a> {
         let problem = Problem::new(Code::LOG_COLUMNS, message)
             .file(self.run)
             .column(text);
-        problem.help(way_out(text))
+        let quoted = self.with_quotes(text);
+        problem.help(quoted.unwrap_or_else(|| way_out(text)))
+    }
+
+    /// Help for a column in an expression whose name has blanks or signs and no quotation marks.
+    fn with_quotes(&self, text: &str) -> Option<String> {
+        let names = self.tables.iter().flat_map(|table| table.existing().names);
+        let needs_quotes = names.filter(|name| {
+            let is_plain = |sign: char| sign.is_alphanumeric() || sign == '_' || sign == '.';
+            !name.chars().all(is_plain) && !name.contains('\'') && text.contains(*name)
+        });
+        let name = needs_quotes.max_by_key(|name| name.len())?;
+        let better = text.replacen(name, &format!("'{name}'"), 1);
+        Expression::parse(&better, &mut |_| Ok(Expression::Number(f64::NAN))).ok()?;
+        Some(format!(
+            "put its name in single quotation marks: `{}`",
+            shown(&better)
+        ))
     }
 
     /// The problem of a column name followed by a unit.

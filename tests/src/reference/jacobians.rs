@@ -15,7 +15,8 @@
 
 use super::Error;
 use super::cables;
-use super::chains;
+use super::closure::chains;
+use super::closure::parasitic_motion;
 use super::kinematics::{
     end_components, end_equations, end_from_leg, end_from_platform, leg_motion, platform_motion,
 };
@@ -23,7 +24,6 @@ use super::linear::{adjugate, condition, determinant, independent_rows, pseudo_i
 use super::mechanism::{End, Leg, Mechanism};
 use super::motion::Motion;
 use super::motors::transmission;
-use super::parasitic_motion;
 use nalgebra::{DMatrix, DVector};
 
 /// Largest relative residual that counts as rounding.

@@ -18,7 +18,6 @@
 //! Overactuated Parallel Robots" (2015), in their corrected form.
 
 pub mod cables;
-pub mod chains;
 pub mod closure;
 pub mod dynamics;
 pub mod elements;
@@ -32,7 +31,6 @@ pub mod motion;
 pub mod motors;
 pub mod newton_euler;
 pub mod parameters;
-pub mod parasitic_motion;
 pub mod placement;
 pub mod robots;
 pub mod states;

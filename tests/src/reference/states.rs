@@ -6,12 +6,12 @@
 
 use super::Error;
 use super::closure::State;
+use super::closure::parasitic_motion;
 use super::mechanism::Mechanism;
 use super::motion::Motion;
 use super::parameters::{
     BODY, INERTIAL, STIFFNESS, count, element_start, motor_start, platform_start,
 };
-use super::parasitic_motion;
 use super::units::unitless_condition;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};

@@ -5,9 +5,9 @@
 
 use super::Error;
 use super::closure::State;
+use super::closure::parasitic_motion;
 use super::mechanism::Mechanism;
 use super::motion::Motion;
-use super::parasitic_motion;
 use nalgebra::DVector;
 
 /// Largest step of the finite differences, s.

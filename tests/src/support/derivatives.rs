@@ -4,8 +4,8 @@
 //! two of them agree: loads and dry friction jump where a sign changes between the points.
 
 use super::{Failure, Sample};
+use crate::reference::closure::parasitic_motion;
 use crate::reference::dynamics::Dynamics;
-use crate::reference::parasitic_motion;
 use crate::reference::{Mechanism, Motion, State};
 use nalgebra::{DMatrix, DVector};
 use overact::Function;

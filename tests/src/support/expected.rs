@@ -5,12 +5,12 @@ use super::derivatives;
 use super::frames::{self, Frames};
 use super::sample::fitted_acceleration;
 use super::{Failure, Parameters, Sample};
+use crate::reference::closure::parasitic_motion::rates;
 use crate::reference::dynamics::Partition;
 use crate::reference::linear::pseudo_inverse;
 use crate::reference::parameters::{
     BODY, INERTIAL, element_start, leg_start, motor_start, names, platform_start,
 };
-use crate::reference::parasitic_motion::rates;
 use crate::reference::{Dynamics, Mechanism, State};
 use nalgebra::{DMatrix, DVector};
 use overact::{Columns, Function};

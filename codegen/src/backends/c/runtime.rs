@@ -17,16 +17,16 @@ const WRAP_ANGLE: &str = include_str!("text/wrap_angle.c");
 /// Distribution of forces on cables with one internal torque, with several, and without any.
 const TENSIONS: [&str; 3] = [
     concat!(
-        include_str!("text/tension_line.c"),
+        include_str!("text/tension/tension_line.c"),
         "\n",
-        include_str!("text/tensions.c")
+        include_str!("text/tension/tensions.c")
     ),
     concat!(
-        include_str!("text/tension.c"),
+        include_str!("text/tension/tension.c"),
         "\n",
-        include_str!("text/tensions.c")
+        include_str!("text/tension/tensions.c")
     ),
-    include_str!("text/tension_square.c"),
+    include_str!("text/tension/tension_square.c"),
 ];
 
 /// The distribution of forces on cables, with the table of the least torques; empty for functions

@@ -1,4 +1,4 @@
-//! Results of each pass on small expressions: one file for each case in `cases/`.
+//! Results of each pass on small expressions: one file for each case in `tests/lowering_cases/`.
 //!
 //! A file states the reason for the case, the passes, the starting point, the input and the
 //! expected result. `OVERACT_BLESS=1 cargo test -p overact-codegen --lib lowering` rewrites the
@@ -24,7 +24,7 @@ struct Case {
 }
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("src/lowering/tests/cases")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lowering_cases")
 }
 
 /// The passes in a line such as `signs, selections`; also `none` and `all`.

@@ -5,14 +5,16 @@
 //! least squares. Positions of the other joints come from Newton's method on the same equations.
 //! The equations of a cut are expressed in the axes of the body where its chain starts.
 
-use super::Error;
-use super::closure::State;
-use super::jacobians::{Jacobians, end_rows};
-use super::kinematics::{BodyMotion, all_legs, end_components, end_from_leg, end_from_platform};
-use super::linear::pseudo_inverse;
-use super::mechanism::{Leg, Mechanism};
-use super::motors::transmission;
-use super::placement::{Frame, logarithm};
+use super::State;
+use crate::reference::Error;
+use crate::reference::jacobians::{Jacobians, end_rows};
+use crate::reference::kinematics::{
+    BodyMotion, all_legs, end_components, end_from_leg, end_from_platform,
+};
+use crate::reference::linear::pseudo_inverse;
+use crate::reference::mechanism::{Leg, Mechanism};
+use crate::reference::motors::transmission;
+use crate::reference::placement::{Frame, logarithm};
 use nalgebra::{DMatrix, DVector, Vector6};
 
 /// Relative residual of the equations up to which it counts as rounding.

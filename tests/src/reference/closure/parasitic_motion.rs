@@ -7,17 +7,17 @@
 //! result is the null space of Φ in the basis with unit independent components. Accelerations use
 //! the same matrix with the bias accelerations of both sides of every end.
 
-use super::Error;
-use super::closure::{State, closure_residual};
-use super::jacobians::{Jacobians, attachment_jacobian, end_jacobian};
-use super::kinematics::{
+use super::{State, closure_residual};
+use crate::reference::Error;
+use crate::reference::jacobians::{Jacobians, attachment_jacobian, end_jacobian};
+use crate::reference::kinematics::{
     BodyMotion, end_components, end_equations, end_from_leg, end_from_platform, leg_motion,
     platform_motion,
 };
-use super::linear::pseudo_inverse;
-use super::mechanism::{Leg, Mechanism};
-use super::motion::Motion;
-use super::motors::transmission;
+use crate::reference::linear::pseudo_inverse;
+use crate::reference::mechanism::{Leg, Mechanism};
+use crate::reference::motion::Motion;
+use crate::reference::motors::transmission;
 use nalgebra::{DMatrix, DVector};
 
 /// Relative residual of the equations up to which it counts as rounding.

@@ -1,7 +1,7 @@
 //! A joint's table with unevaluated expressions.
 
 use crate::diagnostic::Span;
-use crate::robot::compound_joint_kind::CompoundJointKind;
+use crate::robot::joint::compound_kind::CompoundJointKind;
 use crate::robot::model::{JointKind, Spanned};
 use crate::toml_text::reader::Item;
 use overact_core::StandardParameter;

@@ -4,7 +4,7 @@
 const LISTED: usize = 10;
 
 /// Names in words, each once.
-pub(super) fn listed<'n>(names: impl Iterator<Item = &'n str>) -> String {
+pub(crate) fn listed<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
     let mut each: Vec<&str> = Vec::new();
     for name in names {
         if !each.contains(&name) {

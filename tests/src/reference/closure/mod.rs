@@ -8,19 +8,20 @@
 //! coordinates, the forward recursion gives the ends' bias accelerations J̇_k q̇ and J̇_tk v; then
 //! J_k q̈ = J_tk v̇ + J̇_tk v - J̇_k q̇.
 
-use super::Error;
-use super::cables;
-use super::chains;
-use super::jacobians::{Jacobians, end_jacobian, follow};
-use super::kinematics::{
+pub mod chains;
+pub mod parasitic_motion;
+
+use crate::reference::Error;
+use crate::reference::cables;
+use crate::reference::jacobians::{Jacobians, end_jacobian, follow};
+use crate::reference::kinematics::{
     BodyMotion, all_legs, end_components, end_from_leg, end_from_platform, leg_motion,
     platform_motion,
 };
-use super::linear::pseudo_inverse;
-use super::mechanism::{End, Leg, Mechanism};
-use super::motion::Motion;
-use super::parasitic_motion;
-use super::placement::logarithm;
+use crate::reference::linear::pseudo_inverse;
+use crate::reference::mechanism::{End, Leg, Mechanism};
+use crate::reference::motion::Motion;
+use crate::reference::placement::logarithm;
 use nalgebra::{DMatrix, DVector};
 
 /// Number of steps from the home pose.
