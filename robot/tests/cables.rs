@@ -320,8 +320,8 @@ fn wrapped(radius: f64, across: f64, up: f64) -> f64 {
 
 #[test]
 fn robots_with_cables_agree_with_finite_differences() {
-    for (name, least) in [("planar", 10.0), ("spatial", 20.0)] {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots/cables");
+    for (name, least) in [("cable_planar", 10.0), ("cable_spatial", 20.0)] {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots");
         let file = folder.join(format!("{name}.toml"));
         let text = std::fs::read_to_string(file).expect("a description");
         compare(&text, least);

@@ -16,6 +16,8 @@ pub use overact_robots::{DualV, Emps, FiveBar, Rx90, ThreeLegPoint};
 
 robot!(ankle: Ankle);
 robot!(ankle_offset: AnkleOffset);
+robot!(cable_planar: CablePlanar);
+robot!(cable_spatial: CableSpatial);
 robot!(delta: Delta);
 robot!(delta_4: Delta4);
 robot!(dvrk_mtm: DvrkMtm);
@@ -59,6 +61,8 @@ pub fn by_stem(stem: &str) -> Option<&'static dyn Model> {
     Some(match stem {
         "ankle" => &Ankle,
         "ankle_offset" => &AnkleOffset,
+        "cable_planar" => &CablePlanar,
+        "cable_spatial" => &CableSpatial,
         "delta" => &Delta,
         "delta_4" => &Delta4,
         "dualv" => &DualV,

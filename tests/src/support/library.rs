@@ -17,6 +17,8 @@ macro_rules! library {
         $crate::library! { $check;
             ankle: Ankle,
             ankle_offset: AnkleOffset,
+            cable_planar: CablePlanar,
+            cable_spatial: CableSpatial,
             delta: Delta,
             delta_4: Delta4,
             dualv: DualV,
@@ -83,8 +85,9 @@ const NIGHT_ROBOTS: [(&str, &str); 4] = [
 ///
 /// They take half the time of the remaining robots. The default tier keeps redundant robots of
 /// planar, point, Schoenflies and one-axis motion, and a platform with parasitic motion.
-const FULL_TIER_ROBOTS: [(&str, &str); 7] = [
+const FULL_TIER_ROBOTS: [(&str, &str); 8] = [
     ("ankle_offset", "ankle"),
+    ("cable_spatial", "hexapod"),
     ("exechon", "spatial_3prs"),
     ("planar_4prr", "dualv"),
     ("reachy_mini", "hexapod"),

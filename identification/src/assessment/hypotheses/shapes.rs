@@ -13,7 +13,8 @@ pub(crate) enum Shape {
     Speed,
     /// The signed square of the velocity: drag.
     Drag,
-    /// The sign of the velocity, fading away from standstill: Stribeck friction.
+    /// The sign of the velocity, fading away from standstill: Stribeck friction, as in the key
+    /// `stribeck` of a joint.
     Stribeck,
     /// Magnitude of the torque with the sign of the velocity: load-dependent friction.
     Load,
@@ -90,7 +91,7 @@ pub(crate) struct PositionRange {
     pub(crate) speed: f64,
 }
 
-/// Fraction of the largest speed at which Stribeck friction has fallen to 1/e.
+/// Fraction of the largest speed at which Stribeck friction has fallen to a half.
 const STRIBECK: f64 = 0.1;
 
 impl PositionRange {
@@ -124,6 +125,7 @@ impl Shape {
             Self::Speed => " (\"friction by direction\" in a joint's `parameters`)",
             Self::Drag => " (`fq` in a joint's `parameters`)",
             Self::Acceleration => " (`ia` in a joint's `parameters`)",
+            Self::Stribeck => " (`stribeck` of a joint)",
             Self::Position => " (`spring` of a joint)",
             Self::Load => " (`friction_load` of a joint, or `gear_friction`)",
             _ => "",
@@ -197,8 +199,8 @@ impl Shape {
         }
     }
 
-    /// Velocity at which Stribeck friction fades, for the largest `speed` (m/s, rad/s).
-    pub(crate) fn fading(speed: f64) -> f64 {
+    /// Velocity at which Stribeck friction is a half, for the largest `speed` (m/s, rad/s).
+    pub(crate) const fn fading(speed: f64) -> f64 {
         STRIBECK * speed
     }
 
@@ -219,7 +221,8 @@ impl Shape {
             Self::Speed => velocity.abs(),
             Self::Drag => velocity * velocity.abs(),
             Self::Stribeck if position_range.speed > 0.0 => {
-                sign * (-velocity.abs() / (STRIBECK * position_range.speed)).exp()
+                let relative = velocity / Self::fading(position_range.speed);
+                sign / (1.0 + relative * relative)
             }
             Self::Load => sign * torque.abs(),
             Self::Magnitude => torque.abs(),
