@@ -205,6 +205,7 @@ const LAYER_ORDERS: [LayerOrder; 10] = [
             "options",
             "format",
             "account",
+            "listing",
             "files",
             "xml",
             "prune",

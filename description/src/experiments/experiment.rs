@@ -6,7 +6,7 @@ use crate::experiments::payloads;
 use crate::experiments::per_actuator::{effort, per_actuator};
 use crate::expressions::dimension::Dimension;
 use crate::robot::inventory::{Body, Inventory};
-use crate::robot::joint;
+use crate::robot::leg::joint;
 use crate::robot::model::{JointKind, Spanned};
 use crate::toml_text::reader::{Item, Table};
 use crate::toml_text::scope::Scope;

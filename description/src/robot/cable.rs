@@ -5,8 +5,8 @@
 
 use crate::diagnostic::Code;
 use crate::expressions::dimension::Dimension;
-use crate::robot::joint::compound_kind::CompoundJointKind;
-use crate::robot::joint::shape::JointShape;
+use crate::robot::joint_shape::JointShape;
+use crate::robot::joint_shape::compound_kind::CompoundJointKind;
 use crate::robot::model::{Cable, JointKind, Spanned};
 use crate::robot::parameters::Owner;
 use crate::toml_text::reader::{Item, Table};

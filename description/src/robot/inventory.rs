@@ -2,7 +2,7 @@
 
 use crate::expressions::dimension::Dimension;
 use crate::robot::actuator_names::ActuatorNames;
-use crate::robot::joint;
+use crate::robot::leg::joint;
 use crate::robot::model::{JointKind, Leg, Motion, Motor, Payload, Platform, Spanned, actuators};
 use crate::robot::point_spring::PointSpring;
 use crate::toml_text::scope::Scope;

@@ -2,13 +2,11 @@
 
 pub(crate) mod actuator_names;
 pub(crate) mod cable;
-pub(crate) mod cable_robot;
-pub(crate) mod chain;
-pub(crate) mod coupled_motor;
 pub(crate) mod frame;
+pub(crate) mod friction;
 pub(crate) mod geometry;
 pub(crate) mod inventory;
-pub(crate) mod joint;
+pub(crate) mod joint_shape;
 pub(crate) mod leg;
 pub(crate) mod model;
 pub(crate) mod motion;
@@ -18,4 +16,5 @@ pub(crate) mod payload;
 pub(crate) mod platform;
 pub(crate) mod point_spring;
 pub(crate) mod shape;
+pub(crate) mod spring;
 pub(crate) mod warnings;

@@ -8,7 +8,7 @@
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::expressions::dimension::Dimension;
 use crate::expressions::value::Value;
-use crate::robot::joint::friction;
+use crate::robot::friction;
 use crate::robot::model::{Joint, JointKind, Spanned};
 use crate::robot::parameters::Owner;
 use crate::toml_text::reader::{Item, Table};

@@ -1,7 +1,7 @@
 //! Lists of standard parameters: symbols, and groups of them.
 
 use crate::diagnostic::{Code, did_you_mean};
-use crate::robot::joint::friction;
+use crate::robot::friction;
 use crate::robot::model::JointKind;
 use crate::toml_text::reader::Item;
 use overact_core::StandardParameter as P;

@@ -1,9 +1,9 @@
 //! The tables `[payload.NAME]`: payloads on bodies, which some runs carry.
 
 use crate::diagnostic::{Code, Diagnostic, Span};
-use crate::robot::chain::GROUND;
 use crate::robot::frame::Bodies;
 use crate::robot::geometry::placement;
+use crate::robot::leg::chain::GROUND;
 use crate::robot::model::{FrameBody, Leg, Payload, Spanned};
 use crate::robot::parameters::Owner;
 use crate::toml_text::reader::{Item, Table};

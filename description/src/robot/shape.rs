@@ -2,9 +2,9 @@
 
 use crate::diagnostic::{Code, Diagnostic, Span, did_you_mean};
 use crate::robot::cable::{self, CableShape};
-use crate::robot::joint::compound::split;
-use crate::robot::joint::compound_kind::{CompoundJointKind, WORDS};
-use crate::robot::joint::shape::{JointShape, STEPS};
+use crate::robot::joint_shape::compound::split;
+use crate::robot::joint_shape::compound_kind::{CompoundJointKind, WORDS};
+use crate::robot::joint_shape::{JointShape, STEPS};
 use crate::robot::model::{JointKind, Spanned};
 use crate::robot::motor::{self, MotorShape};
 use crate::robot::parameters::Owner;

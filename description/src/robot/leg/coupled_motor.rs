@@ -2,12 +2,12 @@
 //!
 //! A table `[motor.NAME]` names joints by leg, `turns = "left.q1 + right.q1"`. A table
 //! `[[leg.NAME.motor]]` gives every placement of the leg a motor of its own. In a robot without
-//! loops both describe coupled joints without a body, see [`motor`](super::motor).
+//! loops both describe coupled joints without a body, see [`motor`](crate::robot::motor).
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expressions::value::Value;
-use crate::robot::joint;
-use crate::robot::joint::shape::variable_name;
+use crate::robot::joint_shape::variable_name;
+use crate::robot::leg::joint;
 use crate::robot::model::{BodyIndex, Joint, Leg, Motor, MotorTerm};
 use crate::robot::motor;
 use crate::robot::shape::Shape;

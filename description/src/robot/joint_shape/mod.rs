@@ -1,7 +1,10 @@
 //! A joint's table with unevaluated expressions.
 
+pub(crate) mod compound;
+pub(crate) mod compound_kind;
+
 use crate::diagnostic::Span;
-use crate::robot::joint::compound_kind::CompoundJointKind;
+use crate::robot::joint_shape::compound_kind::CompoundJointKind;
 use crate::robot::model::{JointKind, Spanned};
 use crate::toml_text::reader::Item;
 use overact_core::StandardParameter;

@@ -1,9 +1,13 @@
 //! The tables `[[place]]`: a shape evaluated with the values of a placement.
 
+pub(crate) mod cable_robot;
+pub(crate) mod chain;
+pub(crate) mod coupled_motor;
+pub(crate) mod joint;
+
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};
 use crate::robot::cable;
 use crate::robot::geometry::placement;
-use crate::robot::joint;
 use crate::robot::model::{End, Leg, Spanned};
 use crate::robot::shape::Shape;
 use crate::toml_text::reader::Table;

@@ -1,20 +1,14 @@
 //! Joints of a placed leg: geometry and coupling.
 
-pub(crate) mod compound;
-pub(crate) mod compound_kind;
-pub(crate) mod friction;
-pub(crate) mod shape;
-pub(crate) mod spring;
-
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expressions::dimension::Dimension;
 use crate::expressions::scalar::Scalar;
 use crate::expressions::value::Value;
-use crate::robot::joint::friction;
-use crate::robot::joint::shape::JointShape;
-use crate::robot::joint::spring;
+use crate::robot::friction;
+use crate::robot::joint_shape::JointShape;
 use crate::robot::model::{Joint, JointKind, Spanned};
 use crate::robot::shape::Shape;
+use crate::robot::spring;
 use crate::robot::warnings;
 use crate::toml_text::reader::{Item, Table};
 use crate::toml_text::scope::Scope;

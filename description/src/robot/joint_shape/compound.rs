@@ -1,7 +1,7 @@
 //! Conversion of joints with several axes to joints with one axis.
 
-use crate::robot::joint::compound_kind::{Axis, CompoundJointKind};
-use crate::robot::joint::shape::JointShape;
+use crate::robot::joint_shape::JointShape;
+use crate::robot::joint_shape::compound_kind::{Axis, CompoundJointKind};
 use crate::robot::model::{JointKind, Spanned};
 use overact_core::StandardParameter;
 
