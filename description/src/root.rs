@@ -9,7 +9,9 @@ use crate::robot::inventory::{Body, Inventory};
 use crate::robot::model::{Leg, Motor, Platform, Spanned, actuators};
 use crate::robot::shape::{MOST_JOINTS, Shape};
 use crate::robot::{
-    cable_robot, chain, coupled_motor, frame, leg, payload, platform, point_spring, shape,
+    frame, leg,
+    leg::{cable_robot, chain, coupled_motor},
+    payload, platform, point_spring, shape,
 };
 use crate::toml_text::reader::{Context, Item, Table};
 use crate::toml_text::scope::Scope;

@@ -7,7 +7,7 @@ use crate::{
 use overact_logs::{Error, Log};
 
 /// Relative residual of the base parameters (percent) above which faults are looked for.
-const SUSPICIOUS_PERCENT: f64 = 5.0;
+const SUSPICIOUS_PERCENT: f64 = 3.0;
 
 /// Time from the start of each run that is used, s.
 const BEGINNING_SECONDS: f64 = 5.0;
