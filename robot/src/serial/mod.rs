@@ -24,7 +24,7 @@ use crate::{
 };
 use lumping::{Lumping, Scales};
 use nalgebra::{DMatrix, DVector, Vector3};
-use overact::{Columns, Function, Model};
+use overact::{Columns, Function, Model, StandardParameter};
 use overact_codegen::{
     Effort, Request, derivation::MotionInput, diagnostic::Code, mechanism::Mechanism,
 };
@@ -252,21 +252,21 @@ fn notes(
     robot: &Robot,
 ) -> Vec<String> {
     let info = robot.model().info();
-    let has = |symbol: &str| {
+    let has = |is_kind: &dyn Fn(StandardParameter) -> bool| {
         let mut own = info.parameters.iter();
-        own.any(|one| one.symbol.name() == symbol && value(one.name) != 0.0)
+        own.any(|one| is_kind(one.symbol) && value(one.name) != 0.0)
     };
     let mut notes = Vec::new();
-    let friction = [
-        "fv", "fs", "off", "fv_pos", "fv_neg", "fs_pos", "fs_neg", "fst", "fl",
-    ];
-    if friction.iter().any(|symbol| has(symbol)) {
+    if has(&|symbol| symbol.is_friction() || symbol == StandardParameter::Off) {
         notes.push("friction and offsets are left out".to_owned());
     }
     let is_known = |leg: &overact_codegen::mechanism::Leg| {
         leg.joints.iter().any(|joint| joint.known.is_some())
     };
-    if has("k") || !mechanism.springs.is_empty() || mechanism.legs.iter().any(is_known) {
+    if has(&|symbol| symbol == StandardParameter::K)
+        || !mechanism.springs.is_empty()
+        || mechanism.legs.iter().any(is_known)
+    {
         notes.push("springs, dampers and known torques are left out".to_owned());
     }
     if !info.payload_parameters.is_empty() {
@@ -278,7 +278,7 @@ fn notes(
             "URDF has no gravity: set it to {gravity} m/s² along -z in the simulator"
         ));
     }
-    if format == Format::Urdf && has("ia") {
+    if format == Format::Urdf && has(&|symbol| symbol == StandardParameter::Ia) {
         notes.push(
             "URDF has no rotor inertia: it is in the inertia of the bodies, as far as it fits there"
                 .to_owned(),

@@ -29,6 +29,8 @@ fn balance(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
     let backends: [&dyn Backend; 2] = [&Served(compiled), &Evaluated(model)];
     let mut worst = [0.0_f64; 2];
     let columns = expected.parameters();
+    let least = expected.mechanism.least_tensions();
+    let pulls: Vec<bool> = least.iter().map(Option::is_some).collect();
     let all = samples(&expected.mechanism, &columns, by_tiers(STATES), 17, false)?;
     for sample in all {
         let (sample, chi) = without_friction(expected, &sample);
@@ -41,7 +43,11 @@ fn balance(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
         for (worst, backend) in worst.iter_mut().zip(&backends) {
             let torques = backend.call("inverse_dynamics", &sample)?;
             let rates = backend.call("inverse_jacobian", &sample)? * twist(&sample);
-            let powers = torques.component_mul(&rates);
+            // A tension pulls against the length of its cable.
+            let forces = DMatrix::from_fn(torques.nrows(), 1, |i, _| {
+                if pulls[i] { -torques[i] } else { torques[i] }
+            });
+            let powers = forces.component_mul(&rates);
             let scale = powers.abs().sum().max(change[0].abs());
             *worst = worst.max(((powers.sum() - change[0]).abs() - rounding).max(0.0) / scale);
         }

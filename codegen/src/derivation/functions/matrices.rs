@@ -9,7 +9,7 @@ use crate::mechanism::Actuator;
 
 impl<'a> DerivationContext<'a, '_> {
     /// A_p (n × r) and B_p (n × n), eq. (11): the rows of the legs' adjugates. A motor that drives
-    /// several joints has its rows of J_p^inv and of minus the identity.
+    /// several joints and a cable have their rows of J_p^inv and of minus the identity.
     pub(crate) fn closure_matrices(&mut self) -> (Rows<'a>, Rows<'a>) {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let joints = mechanism.joints();
@@ -21,7 +21,8 @@ impl<'a> DerivationContext<'a, '_> {
                 return arena.one();
             };
             let leg = joints[joint].leg;
-            let closure = self.robot.legs[leg].closure.as_ref();
+            let state = &self.robot.legs[leg];
+            let closure = state.closure.as_ref().filter(|_| state.cable.is_none());
             if mechanism.is_parasitic() {
                 self.determinant(leg).unwrap_or_else(|| arena.one())
             } else {

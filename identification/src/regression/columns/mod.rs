@@ -8,7 +8,7 @@ use super::friction::friction_rates;
 use crate::settings::Settings;
 use StandardParameter as P;
 use column::Origin;
-use overact::{Body, Info, Model, Sizes, StandardParameter};
+use overact::{Body, Model, Sizes, StandardParameter};
 use overact_logs::{Error, Load};
 
 pub use column::{Column, Direction, is_carried, load_of};
