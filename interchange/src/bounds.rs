@@ -100,6 +100,22 @@ pub(crate) fn check(files: &Files, model: &Model) -> Option<()> {
             let message = format!("the joint `{}` has a number beyond {LARGEST:e}", joint.name);
             report(files, Some(&joint.place), message);
         }
+        let negative = [
+            ("rotor inertia", joint.armature),
+            ("damping", joint.damping),
+            ("friction", joint.friction),
+            (
+                "stiffness",
+                joint.spring.map_or(0.0, |(stiffness, _)| stiffness),
+            ),
+        ];
+        for (what, _) in negative.into_iter().filter(|(_, value)| *value < 0.0) {
+            let reason = format!(
+                "`{}`: its {what} is negative; kept in the model",
+                joint.name
+            );
+            files.record(Use::Reported, &joint.place, "joint", None, &reason);
+        }
         if joint.follow.is_some_and(|follow| follow.factor == 0.0) {
             let message = format!(
                 "the joint `{}` is coupled to another with the factor 0: it does not move",
@@ -140,6 +156,12 @@ pub(crate) fn check(files: &Files, model: &Model) -> Option<()> {
         );
     }
     files.is_clean().then_some(())
+}
+
+/// Reports position limits that leave no range.
+pub(crate) fn record_empty_range(files: &Files, limits: &Element) {
+    let reason = "the lower limit is not below the upper one: the joint has no limits here";
+    files.record(Use::Reported, &limits.place, &limits.name, None, reason);
 }
 
 /// Largest angle of a pose, rad; larger ones have lost digits within the turn.

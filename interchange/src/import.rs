@@ -28,6 +28,9 @@ use crate::{
 use overact_description::diagnostic::Diagnostics;
 use std::path::{Path, PathBuf};
 
+/// Largest home position of an option, rad or m.
+const LARGEST_HOME: f64 = 1e6;
+
 /// A description generated from a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Imported {
@@ -365,6 +368,11 @@ fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
     }
     for (name, position) in &options.home {
         let at = find(model, name)?;
+        if position.abs() > LARGEST_HOME {
+            let message =
+                format!("the home position {position} of `{name}` is beyond {LARGEST_HOME:e}");
+            files.refuse(message, "give it in rad or m");
+        }
         model.joints[at].home = *position;
     }
     if model.closures.is_empty() {

@@ -240,9 +240,10 @@ impl Model {
         own.chain(motors).collect()
     }
 
-    /// Body with a name.
+    /// Body with a name, other than the ground.
     pub(crate) fn body_named(&self, name: &str) -> Option<usize> {
-        self.bodies.iter().position(|body| body.name == name)
+        let mut bodies = self.bodies.iter().enumerate().skip(1);
+        bodies.find_map(|(at, body)| (body.name == name).then_some(at))
     }
 
     /// Body that each joint carries; the ground for joints without a body.

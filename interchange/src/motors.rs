@@ -79,7 +79,9 @@ pub(crate) fn resolve(files: &Files, model: &mut Model, is_chosen: bool) {
     }
     if !model.closures.is_empty() {
         motors.retain(|motor| motor.turns.len() > 1);
-        for joint in motors.iter().flat_map(joints_of) {
+        // Several motors may turn a joint.
+        let turned: BTreeSet<usize> = motors.iter().flat_map(joints_of).collect();
+        for joint in turned {
             let own = &mut model.joints[joint];
             own.is_turned = !own.actuated;
             own.actuated = true;

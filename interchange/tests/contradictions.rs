@@ -242,3 +242,31 @@ fn files_in_utf_16_are_rejected_with_the_encoding() {
     let message = &diagnostics.iter().next().expect("an error").message;
     assert!(message.contains("save it as UTF-8"), "{message}");
 }
+
+#[test]
+fn the_ground_is_called_world_only() {
+    let named = |name: &str| body("", "", MASS, "").replace("name='a'", &format!("name='{name}'"));
+    assert!(read("robot.xml", &named("ground")).is_ok());
+    assert_rejected(&named("world"), "3: two bodies have the name `world`");
+    let connect = "<equality><connect body1='a' body2='ground' anchor='0 0 0'/></equality>";
+    let errors = read("robot.xml", &body("", "", MASS, connect)).expect_err("an error");
+    assert!(errors.contains("there is no body `ground`"), "{errors}");
+}
+
+#[test]
+fn limits_without_a_range_and_negative_values_are_reported() {
+    let joint = |attributes: &str| {
+        body("", "", MASS, "").replace("name='j'", &format!("name='j' {attributes}"))
+    };
+    for (attributes, reason) in [
+        ("limited='true' range='1 -1'", "lower limit is not below"),
+        ("armature='-1'", "rotor inertia is negative"),
+        ("damping='-1'", "damping is negative"),
+    ] {
+        let found =
+            read("robot.xml", &joint(attributes)).unwrap_or_else(|errors| panic!("{errors}"));
+        let reported = &found.account.reported;
+        assert_eq!(reported.len(), 1, "{reported:?}");
+        assert!(reported[0].reason.contains(reason), "{reported:?}");
+    }
+}

@@ -319,6 +319,35 @@ fn coupled_motors_are_kept_in_closed_loop_robots() {
 }
 
 #[test]
+fn two_motors_may_turn_the_same_joints_of_a_loop() {
+    let body = |name: &str, at: &str, inside: &str| {
+        format!(
+            "<body name='{name}' pos='{at}'><inertial pos='0.1 0 0.02' mass='0.5' diaginertia='1e-3 2e-3 2e-3'/>\
+             <joint name='q_{name}' axis='0 -1 0'/>{inside}</body>"
+        )
+    };
+    let bodies = body("crank", "0 0 0", &body("coupler", "0.1 0 0", ""))
+        + &body("rocker", "0.4 0 0", "")
+        + &body("fan", "1 0 0", "");
+    let tendon = |name: &str, fan: f64| {
+        format!(
+            "<fixed name='{name}'><joint joint='q_crank' coef='3'/><joint joint='q_fan' coef='{fan}'/></fixed>"
+        )
+    };
+    let text = format!(
+        "<mujoco><worldbody>{bodies}</worldbody>\
+         <equality><connect body1='coupler' body2='rocker' anchor='0.3 0 0.25'/></equality>\
+         <tendon>{}{}</tendon>\
+         <actuator><motor name='left' tendon='t'/><motor name='right' tendon='u'/></actuator></mujoco>",
+        tendon("t", 1.0),
+        tendon("u", -1.0)
+    );
+    let found = imported("robot.xml", &text).text;
+    assert!(found.contains("[motor.left]") && found.contains("[motor.right]"));
+    assert!(!found.contains("actuated = true"), "{found}");
+}
+
+#[test]
 fn uniform_gravity_compensation_scales_gravity() {
     let row = |second: &str, joints: &str| {
         let text = hinges("<actuator><motor joint='j1'/></actuator>");

@@ -177,6 +177,45 @@ fn yaml_closures_may_refer_to_fixed_joints() {
 }
 
 #[test]
+fn yaml_lists_may_have_any_notation() {
+    let tip = |name: &str, of: &str, at: &str| {
+        format!("<link name='{name}'/>")
+            + &joint(
+                &format!("{name}_joint"),
+                [of, name],
+                "fixed",
+                &format!("<origin xyz='{at}'/>"),
+            )
+    };
+    let robot = parallelogram(&(tip("s", "coupler", "0.5 0 0") + &tip("t", "rocker", "0.2 0 0")));
+    let expected = plain(read(
+        &robot,
+        "closed_loop: [[s, t]]\ntype: [3d]\nname_mot: [a]\n",
+        "",
+    ));
+    for yaml in [
+        "closed_loop:\n- - s\n  - t\ntype:\n- 3d\nname_mot:\n- a\n...\n",
+        "closed_loop:\n  -\n    - s\n    - t\ntype: [3d]\nname_mot: [a]\n",
+        "closed_loop:\n- [s, t]\ntype: [3d]\nname_mot: [a]\n",
+        "\"closed_loop\": [['s', 't']]\n'type': [3d]\nname_mot: [a]\n",
+    ] {
+        assert_eq!(plain(read(&robot, yaml, "")), expected, "{yaml}");
+    }
+    for (yaml, message) in [
+        (
+            "closed_loop: s\nname_mot: [a]\n",
+            "`closed_loop` is `s`, not a list of pairs of frames\n",
+        ),
+        (
+            "closed_loop: [[s, t]]\ntype: [3d, 6d]\nname_mot: [a]\n",
+            "`type` has 2 entries, but `closed_loop` 1\n",
+        ),
+    ] {
+        assert_eq!(read(&robot, yaml, ""), Err(message.to_owned()), "{yaml}");
+    }
+}
+
+#[test]
 fn yaml_joints_may_be_universal_or_fixed() {
     let row = |middle: &str| {
         let text = "<robot name='row'><link name='base'/>".to_owned()

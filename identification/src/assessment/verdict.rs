@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::check::{Check, Grade};
+use super::check::{Check, CheckKind, Grade};
 use crate::{
     regression::projection::ModelKind,
     result::{Estimate, Estimator, Stage},
@@ -125,6 +125,9 @@ const WORTH_TELLING: f64 = 0.5;
 /// A cause that explains nearly everything makes others that explain much less unlikely.
 const LEAVES_AT_MOST: f64 = 10.0;
 
+/// A fault that explains more than this fraction is reported before missing excitation.
+const NEARLY_EVERYTHING: f64 = 0.9;
+
 /// Failed checks of an estimate.
 #[derive(Debug, Clone)]
 pub struct FailedChecks<'a> {
@@ -157,11 +160,16 @@ pub fn failed_checks(checks: &[Check], model: ModelKind, stage: Stage) -> Failed
         let part = check.explained.filter(|_| !check.kind.is_certain());
         part.unwrap_or(f64::INFINITY)
     };
+    // A fault that explains nearly everything can make columns look undetermined.
+    let rank = |check: &Check| match check.kind {
+        CheckKind::Excitation => NEARLY_EVERYTHING,
+        _ => explained(check),
+    };
     // A stable sort keeps the order of checks that are equal in all three.
     found.sort_by(|(_, a), (_, b)| {
         let causes = a.kind.is_consequence().cmp(&b.kind.is_consequence());
         let causes = causes.then(b.grade.cmp(&a.grade));
-        causes.then(explained(b).total_cmp(&explained(a)))
+        causes.then(rank(b).total_cmp(&rank(a)))
     });
     let (reported, named_only): (Vec<_>, Vec<_>) = found.into_iter().partition(|(_, check)| {
         let own = explained(check);

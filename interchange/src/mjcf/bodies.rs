@@ -1,10 +1,15 @@
 //! Bodies, their joints and inertias.
 
 use super::{
-    BOOLEAN_OR_AUTO, Reader, Sites, adjust::SpringDamper, compensation::Compensation,
-    defaults::MAIN, inertia, names::TakenNames,
+    BOOLEAN_OR_AUTO, Reader, Sites,
+    adjust::SpringDamper,
+    compensation::Compensation,
+    defaults::MAIN,
+    inertia,
+    names::{TakenNames, WORLD},
 };
 use crate::{
+    bounds::record_empty_range,
     files::Files,
     geometry::exact,
     model::{Body, Inertia, Joint, JointType, Model, Pose},
@@ -26,7 +31,7 @@ pub(super) fn read(
     for world in root.all("worldbody") {
         let class = world.get("childclass").unwrap_or(MAIN).to_owned();
         let mut tree = Tree {
-            names: model.bodies.iter().map(|body| body.name.clone()).collect(),
+            names: taken_bodies(model),
             taken: &mut taken,
             model: &mut *model,
             sites: &mut *sites,
@@ -401,6 +406,12 @@ fn spring_damper(
     })
 }
 
+/// Names of bodies that are taken; the ground has that of MJCF.
+fn taken_bodies(model: &Model) -> BTreeSet<String> {
+    let others = model.bodies.iter().skip(1).map(|body| body.name.clone());
+    others.chain([WORLD.to_owned()]).collect()
+}
+
 /// Limits of a joint, if it is limited.
 fn range(reader: &Reader<'_>, element: &Element, kind: JointType) -> Option<[f64; 2]> {
     let limits: [f64; 2] = element.numbers(reader.files, "range")?;
@@ -414,6 +425,9 @@ fn range(reader: &Reader<'_>, element: &Element, kind: JointType) -> Option<[f64
         JointType::Prismatic => limits,
         JointType::Ball => return None,
     };
+    if is_limited && limits[0] >= limits[1] && limits != [0.0; 2] {
+        record_empty_range(reader.files, element);
+    }
     (is_limited && limits[0] < limits[1]).then_some(limits)
 }
 

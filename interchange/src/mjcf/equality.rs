@@ -3,6 +3,7 @@
 use super::{
     BOOLEAN, Reader, Sites,
     defaults::{EQUALITY, MAIN},
+    names::WORLD,
     tendons::Tendons,
 };
 use crate::{
@@ -121,8 +122,8 @@ fn closure_kind(
         });
     }
     let body = |key: &str| {
-        let name = element.get(key).unwrap_or("world");
-        let found = if name == "world" {
+        let name = element.get(key).unwrap_or(WORLD);
+        let found = if name == WORLD {
             Some(0)
         } else {
             model.body_named(name)

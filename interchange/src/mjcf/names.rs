@@ -3,6 +3,9 @@
 use crate::xml::Element;
 use std::collections::BTreeSet;
 
+/// Name of the ground.
+pub(super) const WORLD: &str = "world";
+
 /// Names of the file and those given here, each taken once.
 #[derive(Debug, Default)]
 pub(super) struct TakenNames {

@@ -6,6 +6,7 @@ use super::{
     value::{flag, limit, number, several, text},
 };
 use crate::{
+    bounds::record_empty_range,
     geometry::exact,
     model::{Joint, JointType},
     xml::Element,
@@ -133,6 +134,9 @@ fn axis(
         let ends = (limit(files, own, "lower"), limit(files, own, "upper"));
         if let ((Some(low), Some(high)), true) = (ends, is_limited) {
             joint.range = (low < high).then_some([low, high]);
+            if joint.range.is_none() {
+                record_empty_range(files, own);
+            }
         }
         joint.speed = limit(files, own, "velocity").filter(|speed| *speed > 0.0);
     }

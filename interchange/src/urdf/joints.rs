@@ -3,6 +3,7 @@
 use super::{Links, Tree, body, origin};
 use crate::{
     account::Use,
+    bounds::record_empty_range,
     couplings::{Coupling, Couplings},
     files::Files,
     geometry::exact,
@@ -181,7 +182,11 @@ fn joint(files: &Files, edge: &Edge<'_>, options: &Options, model: &mut Model) -
     }
     if let Some(limit) = element.child("limit") {
         let ends = ["lower", "upper"].map(|key| limit.number(files, key, 0.0));
-        let is_limited = element.get("type") != Some("continuous") && ends[0] < ends[1];
+        let is_limited = element.get("type") != Some("continuous");
+        if is_limited && ends[0] >= ends[1] && ends != [0.0; 2] {
+            record_empty_range(files, limit);
+        }
+        let is_limited = is_limited && ends[0] < ends[1];
         joint.range = (is_limited && kind != JointType::Ball).then_some(ends);
         let speed = limit.number(files, "velocity", 0.0);
         joint.speed = (speed > 0.0).then_some(speed);

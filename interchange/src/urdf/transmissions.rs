@@ -200,9 +200,6 @@ fn drive_two(
     let gear = |of: &Element| reduction(files, of).unwrap_or(1.0);
     let factors = coupling.factors(joints.map(gear));
     model.says_motors = true;
-    for joint in [first, second] {
-        model.joints[joint].actuated = true;
-    }
     for (actuator, [a, b]) in actuators.into_iter().zip(factors) {
         let turns = [(first, a), (second, b)].into_iter();
         let value = |tag: &str| {

@@ -64,6 +64,9 @@ pub(super) enum Value {
     List(Vec<Value>),
 }
 
+/// How closures are written.
+const PAIRS: &str = "write closed_loop: [[a, b], [c, d]]";
+
 type Entries = BTreeMap<String, (Place, Value)>;
 
 impl Value {
@@ -106,14 +109,15 @@ fn entries(files: &Files, file: usize, text: &str) -> Option<Entries> {
             span: at..at + bare.len(),
         };
         at += line.len();
-        if bare.trim().is_empty() || bare.starts_with('#') || bare == "---" {
+        if bare.trim().is_empty() || bare.starts_with('#') || bare == "---" || bare == "..." {
             continue;
         }
         let is_key = !bare.starts_with([' ', '-', '[', ']']);
         match (is_key, bare.split_once(':'), &mut open) {
             (true, Some((key, rest)), _) => {
                 close(&mut open);
-                open = Some((key.trim().to_owned(), place, rest.to_owned()));
+                let key = key.trim().trim_matches(['\'', '"']);
+                open = Some((key.to_owned(), place, rest.to_owned()));
             }
             (false, _, Some((_, _, text))) => {
                 text.push('\n');
@@ -131,20 +135,36 @@ const DEPTH: usize = 8;
 
 /// Parses a bracketed list, hyphenated items or a word; `depth` counts the enclosing lists.
 fn value(text: &str, depth: usize) -> Option<Value> {
-    let text = text.trim();
-    if text.starts_with('-') {
-        if depth > DEPTH {
-            return None;
-        }
-        let items = text
-            .lines()
-            .map(|line| line.trim().strip_prefix('-').map(str::trim));
-        let items = items.map(|item| value(item?, depth + 1));
-        return items.collect::<Option<Vec<_>>>().map(Value::List);
+    if text.trim_start().starts_with('-') {
+        return hyphenated(text, depth);
     }
-    let mut rest = text;
+    let mut rest = text.trim();
     let found = bracketed(&mut rest, depth)?;
     rest.trim().is_empty().then_some(found)
+}
+
+/// Parses items behind hyphens; lines with more indentation continue an item.
+fn hyphenated(text: &str, depth: usize) -> Option<Value> {
+    if depth > DEPTH {
+        return None;
+    }
+    let indentation = |line: &str| line.len() - line.trim_start().len();
+    let lines = || text.lines().filter(|line| !line.trim().is_empty());
+    let own = lines().next().map(indentation)?;
+    let mut items: Vec<String> = Vec::new();
+    for line in lines() {
+        if indentation(line) > own {
+            let item = items.last_mut()?;
+            item.push('\n');
+            item.push_str(line);
+        } else if indentation(line) == own && line.trim_start().starts_with('-') {
+            items.push(line.replacen('-', " ", 1));
+        } else {
+            return None;
+        }
+    }
+    let items = items.iter().map(|item| value(item, depth + 1));
+    items.collect::<Option<Vec<_>>>().map(Value::List)
 }
 
 fn bracketed(rest: &mut &str, depth: usize) -> Option<Value> {
@@ -200,18 +220,34 @@ fn closures(
     tree: &Tree,
     model: &mut Model,
 ) {
-    let Value::List(pairs) = value else { return };
-    let types = entries
-        .get("type")
-        .map(|(_, value)| value.words())
-        .unwrap_or_default();
+    let pairs = match value {
+        Value::List(pairs) => pairs.as_slice(),
+        // No value: no loops.
+        Value::Word(word) if word.is_empty() => &[],
+        Value::Word(word) => {
+            let message = format!("`closed_loop` is `{word}`, not a list of pairs of frames");
+            files.report(place, message, PAIRS);
+            return;
+        }
+    };
+    let given = entries.get("type");
+    let types = given.map(|(_, value)| value.words()).unwrap_or_default();
+    if let Some((place, _)) = given.filter(|_| types.len() != pairs.len()) {
+        let message = format!(
+            "`type` has {} entries, but `closed_loop` {}",
+            types.len(),
+            pairs.len()
+        );
+        files.report(
+            place,
+            message,
+            "give the type of each closure: `3d` or `6d`",
+        );
+        return;
+    }
     for (at, pair) in pairs.iter().enumerate() {
         let [a, b] = pair.words()[..] else {
-            files.report(
-                place,
-                "a closure names two frames",
-                "write closed_loop: [[a, b], [c, d]]",
-            );
+            files.report(place, "a closure names two frames", PAIRS);
             continue;
         };
         let find = |name| tree.find(files, name, place);
