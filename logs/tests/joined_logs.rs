@@ -257,7 +257,7 @@ fn invalid_expressions_are_rejected_with_the_reason() {
             &mapping(column("t"), "q5", "2*cur [A]")
         )
         .expect_err("an error"),
-        "log.csv: `2*cur [A]` is neither a column nor an expression of columns: an operator is missing at ` [A]`\n  help: put its name in single quotation marks: `2*'cur [A]'`"
+        "log.csv: `2*cur [A]` is neither a column nor an expression of columns: there is no function `cur`; there are sin, cos, tan, asin, acos, atan, atan2, sqrt, abs, exp, sign, poly\n  help: put its name in single quotation marks: `2*'cur [A]'`"
     );
     assert_eq!(
         refused("q5/q6", "i"),

@@ -84,8 +84,9 @@ pub(crate) struct ErrorRow<'a> {
 /// Rows of all results.
 ///
 /// With more drives than lines, the torques of all drives follow, which are predicted on validation
-/// runs only.
-pub(crate) fn rows(identification: &Identification) -> Vec<ErrorRow<'_>> {
+/// runs only. The prediction has least norm. If that differs from the measured torques by a preload,
+/// as in cable robots, the measured torques without preload are compared.
+pub(crate) fn rows<'a>(identification: &'a Identification) -> Vec<ErrorRow<'a>> {
     let answers = answers(identification);
     let has_several = answers.len() > 1;
     let mut rows = Vec::new();
@@ -102,19 +103,40 @@ pub(crate) fn rows(identification: &Identification) -> Vec<ErrorRow<'_>> {
         }
     }
     if let (Some(first), true) = (answers.first(), has_several) {
-        let torques = || validations(identification, first).flat_map(|run| &run.torques);
-        let drives = validations(identification, first).next();
-        for drive in drives.into_iter().flat_map(|run| &run.torques) {
+        let runs = || validations(identification, first);
+        let has_preload = runs().any(has_preload);
+        let torques = |run: &'a CrossValidation| -> &'a [LineError] {
+            if has_preload {
+                &run.projected_torques
+            } else {
+                &run.torques
+            }
+        };
+        for drive in runs().next().into_iter().flat_map(torques) {
             rows.push(ErrorRow {
-                model: Some("torque"),
+                model: Some(if has_preload {
+                    "without preload"
+                } else {
+                    "torque"
+                }),
                 name: &drive.name,
                 unit: drive.unit,
                 training: None,
-                validation: worst(torques(), &drive.name),
+                validation: worst(runs().flat_map(torques), &drive.name),
             });
         }
     }
     rows
+}
+
+/// Part of the squared errors that is left without a preload, if there is one.
+const PRELOAD: f64 = 0.25;
+
+/// Whether most of the errors of torques of least norm is a preload.
+fn has_preload(run: &CrossValidation) -> bool {
+    let sum = |lines: &[LineError]| lines.iter().map(|one| one.rms * one.rms).sum::<f64>();
+    let rest = sum(&run.projected_torques);
+    !run.projected_torques.is_empty() && rest < PRELOAD * sum(&run.torques)
 }
 
 /// Error with the largest relative residual among those of a name.

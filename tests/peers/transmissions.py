@@ -106,7 +106,8 @@ def compare(overact, file, folder):
     for (leg, joint), name in zip(description.joints(), description.names(), strict=True):
         own = f"ia_{joint}" + ("" if len(description.legs) == 1 else f"_{leg}")
         of_joint[name] = rotors.get(own, 0.0)
-    motors = [of_joint[next(iter(terms))] for terms in description.drives()]
+    motors = [of_joint[name] for name in description.actuated()]
+    motors += [rotors.get(f"ia_{name}", 0.0) for name in description.toml.get("motor", {})]
     worst = np.zeros(3)
     for at, q in enumerate(joints):
         still = 0 * np.array(q)

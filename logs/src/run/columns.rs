@@ -73,7 +73,7 @@ impl<'a> Columns<'a> {
                 nothing
             }
             // Names may contain parentheses, as around a unit.
-            Err(_) if self.is_near(text) => {
+            Err(_) if self.is_near(text) && self.with_quotes(text).is_none() => {
                 self.is_missing(text);
                 nothing
             }

@@ -4,7 +4,7 @@
 //! swivels. The pulley's rim is the circle of radius ρ that touches the z axis at E and lies in the
 //! plane of that axis and the platform point. The angle at which the cable leaves the rim is found
 //! by bisection: there the platform point is on the tangent. No derivative of the length is derived;
-//! differences of the length, nine-point and seven-point ones, give its rate and acceleration.
+//! nine-point differences of the length give its rate and acceleration.
 
 use super::mechanism::{End, Leg, Mechanism};
 use super::placement::Frame;
@@ -14,11 +14,11 @@ use std::f64::consts::PI;
 /// Step of first differences, m and rad.
 const STEP: f64 = 5e-3;
 /// Step of second differences, s.
-const TIME: f64 = 3e-3;
+const TIME: f64 = 1e-2;
 /// Weights of nine-point differences of first order.
 const FIRST_DIFFERENCE: [f64; 4] = [0.8, -0.2, 4.0 / 105.0, -1.0 / 280.0];
-/// Weights of seven-point differences of second order.
-const SECOND_DIFFERENCE: [f64; 4] = [-49.0 / 18.0, 1.5, -0.15, 1.0 / 90.0];
+/// Weights of nine-point differences of second order.
+const SECOND_DIFFERENCE: [f64; 5] = [-205.0 / 72.0, 1.6, -0.2, 8.0 / 315.0, -1.0 / 560.0];
 
 /// Length of a cable for the platform's frame; NaN for other legs.
 #[must_use]

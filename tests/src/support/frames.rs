@@ -142,6 +142,7 @@ pub fn output(
                     let forces = forces.collect::<Result<Vec<f64>, Failure>>()?;
                     let transposed = dynamics.jacobians.inverse.transpose();
                     let torques = pseudo_inverse(&transposed) * DVector::from_vec(forces);
+                    let torques = dynamics.with_tensions(&torques);
                     DMatrix::from_column_slice(torques.len(), 1, torques.as_slice())
                 }
             }
