@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 /// Step of first differences, m and rad.
 const STEP: f64 = 5e-3;
 /// Step of second differences, s.
-const TIME: f64 = 1e-2;
+const TIME: f64 = 5e-3;
 /// Weights of nine-point differences of first order.
 const FIRST_DIFFERENCE: [f64; 4] = [0.8, -0.2, 4.0 / 105.0, -1.0 / 280.0];
 /// Weights of nine-point differences of second order.
