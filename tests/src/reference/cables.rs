@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector, Vector2};
 use std::f64::consts::PI;
 
 /// Step of first differences, m and rad.
-const STEP: f64 = 5e-3;
+const STEP: f64 = 8e-3;
 /// Step of second differences, s.
 const TIME: f64 = 5e-3;
 /// Weights of nine-point differences of first order.
