@@ -432,6 +432,12 @@ impl Mechanism {
         of_joints.chain(self.motors.iter().map(|_| None)).collect()
     }
 
+    /// Whether an actuator is a cable.
+    #[must_use]
+    pub fn has_cables(&self) -> bool {
+        self.least_tensions().iter().any(Option::is_some)
+    }
+
     /// Number of actuators, n.
     #[must_use]
     pub fn actuators(&self) -> usize {

@@ -5,9 +5,6 @@ use overact_tests::support::sample::samples;
 use overact_tests::support::{Comparison, Evaluated};
 use overact_tier::by_tiers;
 
-const TOLERANCE: f64 = 1e-9;
-/// Tolerance of robots with cables, whose reference accelerations are second differences.
-const CABLE_TOLERANCE: f64 = 1e-8;
 /// States of each robot in the default, full and nightly tier.
 const STATES: [usize; 3] = [5, 15, 100];
 
@@ -29,13 +26,7 @@ fn agree(robot: &Robot) -> Result<(), Failure> {
     )?;
     let truths = all.iter().map(|sample| expected.at(sample));
     let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
-    let least = expected.mechanism.least_tensions();
-    let tolerance = if least.iter().any(Option::is_some) {
-        CABLE_TOLERANCE
-    } else {
-        TOLERANCE
-    };
-    let mut comparison = Comparison::new(tolerance);
+    let mut comparison = Comparison::new(expected.tolerance());
     let mut count = 0;
     for function in &model.functions {
         comparison.function(function, &Evaluated(model), &all, &truths)?;

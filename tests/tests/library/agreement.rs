@@ -3,7 +3,7 @@
 //! Robots are compiled and evaluated. Tests cover joints, rates, Jacobians, both projections, every
 //! partition, inverse dynamics, mass matrix and internal torques.
 //!
-//! The tolerance of 1e-9 for each entry corresponds to condition numbers up to 60 of legs and
+//! The usual tolerance of 1e-9 for each entry corresponds to condition numbers up to 60 of legs and
 //! inverse Jacobian. It has a margin for squared ones, because pseudo-inverses use normal
 //! equations.
 
@@ -15,9 +15,6 @@ use overact_tests::support::served::partitions;
 use overact_tests::support::{Comparison, Evaluated, Failure, Served};
 use overact_tier::by_tiers;
 
-const TOLERANCE: f64 = 1e-9;
-/// Tolerance of robots with cables, whose reference is differentiated numerically.
-const CABLE_TOLERANCE: f64 = 1e-8;
 /// States of each robot in the default, full and nightly tier.
 const STATES: [usize; 3] = [6, 40, 200];
 
@@ -30,13 +27,7 @@ fn compare(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
     let all = samples(&expected.mechanism, &parameters, states, 7, false)?;
     let truths = all.iter().map(|sample| expected.at(sample));
     let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
-    let least = expected.mechanism.least_tensions();
-    let tolerance = if least.iter().any(Option::is_some) {
-        CABLE_TOLERANCE
-    } else {
-        TOLERANCE
-    };
-    let mut comparison = Comparison::new(tolerance);
+    let mut comparison = Comparison::new(expected.tolerance());
     // The closure error only has to vanish; rows of blocked directions are unique up to
     // combinations, and `parasitic` tests them.
     let is_compared =

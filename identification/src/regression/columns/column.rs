@@ -22,13 +22,13 @@ use overact_logs::Load;
 /// Source of the numbers of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Origin {
-    /// A column of [`Function::IdmRedPlatform`].
+    /// A column of [`overact::Function::IdmRedPlatform`].
     Robot(usize),
     /// The sum of two of them, friction of both directions.
     Both([usize; 2]),
-    /// A column of [`Function::IdmRedPayload`].
+    /// A column of [`overact::Function::IdmRedPayload`].
     Payload(usize),
-    /// A column of [`Function::IdmRedPlatform`] that counts only in loaded runs.
+    /// A column of [`overact::Function::IdmRedPlatform`] that counts only in loaded runs.
     Carried(usize),
 }
 
