@@ -273,6 +273,13 @@ impl Element {
             sub(first, second)
         }
     }
+
+    /// The smaller one of a projection and that of the negative element.
+    #[must_use]
+    #[inline]
+    pub fn projection_without_sign(projection: u64) -> u64 {
+        projection.min(sub(0, projection))
+    }
 }
 
 /// Projection of the imaginary unit, an arbitrary large number.
@@ -462,6 +469,8 @@ mod tests {
             };
             assert_eq!(difference(b, false), (a - b).projection());
             assert_eq!(difference(b, true), (a + b).projection());
+            let without_sign = |e: Element| Element::projection_without_sign(e.projection());
+            assert_eq!(without_sign(a), without_sign(-a));
             found.insert(log_a);
         }
         assert!(found.len() > 1900, "{} logarithms", found.len());

@@ -19,7 +19,6 @@ pub mod calculus;
 pub mod cosine_sine;
 pub mod direction;
 mod divisors;
-pub(crate) mod filter;
 pub(crate) mod jacobian;
 pub mod print;
 mod sample;

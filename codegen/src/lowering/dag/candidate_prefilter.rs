@@ -67,9 +67,22 @@ impl CandidatePrefilter {
         let (Some(target), Some(other)) = (self.logarithms[target], self.logarithms[other]) else {
             return false;
         };
-        let at = match target.checked_sub(other) {
-            Some(difference) => difference,
-            None => target + LOGARITHMS - other,
+        self.may_have_logarithm(target + LOGARITHMS - other)
+    }
+
+    /// Whether some node or its negative may be `target` times `other`.
+    pub(super) fn may_be_quotient(&self, target: usize, other: usize) -> bool {
+        let (Some(target), Some(other)) = (self.logarithms[target], self.logarithms[other]) else {
+            return true;
+        };
+        self.may_have_logarithm(target + other)
+    }
+
+    /// Whether a node has a logarithm, given below twice the modulus.
+    fn may_have_logarithm(&self, logarithm: u32) -> bool {
+        let at = match logarithm.checked_sub(LOGARITHMS) {
+            Some(reduced) => reduced,
+            None => logarithm,
         } as usize;
         self.products[at / 64] & (1 << (at % 64)) != 0
     }

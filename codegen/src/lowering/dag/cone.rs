@@ -51,7 +51,9 @@ impl Dag {
     /// Replaces a node's definition.
     pub(crate) fn replace(&mut self, node: usize, by: Definition) {
         self.redefine(node, by);
-        self.measure_depths();
+        if self.depth_of(by) != self.depths[node] {
+            self.measure_depths();
+        }
     }
 
     /// Replaces a node's definition; the caller updates depths.

@@ -52,18 +52,20 @@ impl DefinitionTable {
         }
         found
     }
-}
 
-/// All quotients of a live node by a divisor that equal the node.
-fn quotients(dag: &Dag, node: usize, divisors: &[usize]) -> Vec<Definition> {
-    let target = dag.value(Edge::to(node));
-    let quotient = |&divisor: &usize| {
-        let by = Edge::to(divisor);
-        let a = dag.find(target * dag.value(by))?;
-        (a.node() != node).then_some(Definition::Quotient(a, by))
-    };
-    let divisors = divisors.iter().filter(|&&d| d != node);
-    divisors.filter_map(quotient).collect()
+    /// All quotients of a live node by a divisor that equal the node.
+    fn quotients(&self, dag: &Dag, node: usize, divisors: &[usize]) -> Vec<Definition> {
+        let target = dag.value(Edge::to(node));
+        let quotient = |&divisor: &usize| {
+            let by = Edge::to(divisor);
+            let a = dag.find(target * dag.value(by))?;
+            (a.node() != node).then_some(Definition::Quotient(a, by))
+        };
+        let is_candidate =
+            |&&divisor: &&usize| divisor != node && self.prefilter.may_be_quotient(node, divisor);
+        let divisors = divisors.iter().filter(is_candidate);
+        divisors.filter_map(quotient).collect()
+    }
 }
 
 impl Dag {
@@ -78,7 +80,7 @@ impl Dag {
             let pairs = found.pairs(self, node);
             found.pairs.insert(node, pairs);
         }
-        let quotients = quotients(self, node, divisors);
+        let quotients = found.quotients(self, node, divisors);
         let all = found.pairs[&node].iter().copied().chain(quotients);
         let is_there = |by: &Definition| by.operands().all(|operand| self.is_live(operand));
         let forms = all.filter(is_there).collect();

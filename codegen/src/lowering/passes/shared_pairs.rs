@@ -6,11 +6,9 @@
 //! legs have little in common. A small function is searched as a whole. A heading with many nodes
 //! is searched in pieces, each a run of nodes in the order of the derivation.
 
-use super::requests::{Form, Request, requests};
-use super::self_cancelling_pairs::{PairOperation, SelfCancellingPairs};
+use super::requests::{Candidates, Form, Requests};
 use super::single_replacements::{LOSS, fits};
 use crate::cas::field::{Element, canonical};
-use crate::cas::filter::Filter;
 use crate::lowering::SearchLimits;
 use crate::lowering::dag::{Dag, Definition, Dominators, Edge};
 use std::collections::BTreeSet;
@@ -103,21 +101,28 @@ fn pieces(dag: &Dag, own: &[usize], most: usize) -> Vec<Group> {
 }
 
 fn improve_group(dag: &mut Dag, group: &Group) -> i32 {
-    let Group { own, all } = group;
     let tree = Dominators::new(dag);
-    let is_target = |node: &usize| dag.is_open(*node) && tree.cone(*node) > 1;
-    let targets: Vec<usize> = own.iter().copied().filter(is_target).collect();
-    let (requests, heads) = requests(dag, &tree, &targets, all);
-    let filter = Filter::new(heads.keys(), heads.len());
-    let self_cancelling_pairs = SelfCancellingPairs::new(all, &requests, heads.values().copied());
+    let (requests, hits) = hits(dag, &tree, group);
+    hits.iter()
+        .map(|hit| apply(dag, &requests, hit).unwrap_or(0))
+        .sum()
+}
+
+/// Requests of a group's nodes and the pairs with these values, the most promising first.
+fn hits(dag: &Dag, tree: &Dominators, group: &Group) -> (Requests, Vec<Hit>) {
+    let candidates = Candidates::new(dag, tree, &group.own, &group.all);
+    let repeated = candidates.repeated_values();
+    let requests = candidates.requests(&repeated);
     let mut hits = Vec::new();
-    for_each_pair(dag, all, &self_cancelling_pairs, |definition, value| {
+    let mut visit = |definition: Definition, value: Element| {
         let ([key], negative) = canonical([value]);
-        if !filter.may_hold(&key) {
+        let Some(head) = requests.head(&key) else {
+            return;
+        };
+        if requests.are_own(head, definition) {
             return;
         }
-        let Some(&head) = heads.get(&key) else { return };
-        let bound = bound(&requests, head, &tree, definition);
+        let bound = bound(&requests, head, tree, definition);
         // Existing values belong to the search for single operations.
         if bound > 0 && dag.find(value).is_none() {
             hits.push(Hit {
@@ -127,25 +132,36 @@ fn improve_group(dag: &mut Dag, group: &Group) -> i32 {
                 negative,
             });
         }
+    };
+    candidates.for_each_pair(|a, b| {
+        let (first, second) = (Edge::to(a.node), Edge::to(b.node));
+        let of_sum = |negative| Element::projected_difference(a.projection, b.projection, negative);
+        if repeated.may_repeat(of_sum(true)) {
+            visit(Definition::Sum(first, second), a.value + b.value);
+        }
+        let product = a.value * b.value;
+        if repeated.may_repeat(product.projection()) {
+            visit(Definition::Product(first, second), product);
+        }
+        if a.node != b.node && repeated.may_repeat(of_sum(false)) {
+            visit(
+                Definition::Sum(first, second.times(true)),
+                a.value + -b.value,
+            );
+        }
     });
     hits.sort_by(|a, b| b.bound.cmp(&a.bound).then_with(|| a.cmp(b)));
-    hits.iter()
-        .map(|hit| apply(dag, &requests, hit).unwrap_or(0))
-        .sum()
+    (requests, hits)
 }
 
 /// Upper bound of the saving of a value.
 ///
 /// It is the sum over the targets of their cones without the nodes of the new form and without one
 /// operation, minus the value's own operation.
-fn bound(requests: &[Request], head: u32, tree: &Dominators, definition: Definition) -> i32 {
+fn bound(requests: &Requests, head: u32, tree: &Dominators, definition: Definition) -> i32 {
     let mut bound = -1;
-    // Requests of one target are adjacent.
     let mut last = (u32::MAX, 0);
-    let mut at = Some(head);
-    while let Some(number) = at {
-        let request = requests[number as usize];
-        at = request.next;
+    for request in requests.of(head) {
         let target = request.target as usize;
         let needed = definition.operands().chain([request.with.node()]);
         let shared = needed.map(|node| tree.shared(target, node)).max();
@@ -160,38 +176,10 @@ fn bound(requests: &[Request], head: u32, tree: &Dominators, definition: Definit
     bound
 }
 
-/// Calls a function for all pairs of nodes and operations, without values that only these two
-/// request.
-fn for_each_pair(
-    dag: &Dag,
-    all: &[usize],
-    own: &SelfCancellingPairs,
-    mut visit: impl FnMut(Definition, Element),
-) {
-    for (place, &first) in all.iter().enumerate().filter(|(_, n)| dag.is_live(**n)) {
-        let a = Edge::to(first);
-        let left = dag.value(a);
-        let others = all[place..].iter().zip(own.with_later(place));
-        for (&second, &own) in others.filter(|(n, _)| dag.is_live(**n)) {
-            let b = Edge::to(second);
-            let right = dag.value(b);
-            if own & PairOperation::Sum as u8 == 0 {
-                visit(Definition::Sum(a, b), left + right);
-            }
-            if own & PairOperation::Product as u8 == 0 {
-                visit(Definition::Product(a, b), left * right);
-            }
-            if own & PairOperation::Difference as u8 == 0 && first != second {
-                visit(Definition::Sum(a, b.times(true)), left + -right);
-            }
-        }
-    }
-}
-
 /// Adds the node of a hit and replaces all targets for which it saves operations.
 ///
 /// The change is reverted if it saves nothing in total.
-fn apply(dag: &mut Dag, requests: &[Request], hit: &Hit) -> Option<i32> {
+fn apply(dag: &mut Dag, requests: &Requests, hit: &Hit) -> Option<i32> {
     let definition = hit.definition;
     if definition.operands().any(|o| !dag.is_live(o)) {
         return None;
@@ -200,7 +188,7 @@ fn apply(dag: &mut Dag, requests: &[Request], hit: &Hit) -> Option<i32> {
     if dag.find(value).is_some() {
         return None;
     }
-    let scope = dag.scope(requests[hit.head as usize].target as usize);
+    let scope = dag.scope(requests.target(hit.head));
     let node = dag.add(definition, scope);
     let saved = give(dag, requests, hit, Edge::to(node));
     if saved.is_none() {
@@ -210,7 +198,7 @@ fn apply(dag: &mut Dag, requests: &[Request], hit: &Hit) -> Option<i32> {
 }
 
 /// Uses a new node in the targets of a hit.
-fn give(dag: &mut Dag, requests: &[Request], hit: &Hit, node: Edge) -> Option<i32> {
+fn give(dag: &mut Dag, requests: &Requests, hit: &Hit, node: Edge) -> Option<i32> {
     let wanted = wanted(dag, requests, hit, node);
     // Each target's saving counts the new operation once; all together need it only once.
     let hoped: i32 = wanted.iter().map(|(_, _, saving)| saving + 1).sum();
@@ -247,15 +235,12 @@ fn give(dag: &mut Dag, requests: &[Request], hit: &Hit, node: Edge) -> Option<i3
 /// negative.
 fn wanted(
     dag: &mut Dag,
-    requests: &[Request],
+    requests: &Requests,
     hit: &Hit,
     node: Edge,
 ) -> Vec<(usize, Definition, i32)> {
     let mut wanted: Vec<(usize, Definition, i32)> = Vec::new();
-    let mut at = Some(hit.head);
-    while let Some(number) = at {
-        let request = requests[number as usize];
-        at = request.next;
+    for request in requests.of(hit.head) {
         let target = request.target as usize;
         if !dag.is_live(target) || !dag.is_live(request.with.node()) {
             continue;
