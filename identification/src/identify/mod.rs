@@ -173,12 +173,8 @@ pub fn identify_after(
         scores.test_all();
     }
     let narrow = || test.as_ref().map(|test| test.scores(2)).transpose();
-    let column_noise = if settings.checks.has_fault_hypotheses() {
-        stage("position noise");
-        prepared.column_noise(model, dataset.runs, settings)?
-    } else {
-        Vec::new()
-    };
+    stage("position noise");
+    let column_noise = prepared.column_noise(model, dataset.runs, settings)?;
     let ranges = prepared.ranges(model);
     let checks = assessment::checks(
         &Context {

@@ -38,12 +38,19 @@ pub(crate) struct Quantity {
     /// Usual values of robots.
     pub(crate) usual: Range,
     pub(crate) powers: Powers,
+    /// Whether gravity may determine it, as masses in slow motion; it is independent of time then.
+    pub(crate) is_by_weight: bool,
 }
 
 impl Quantity {
     /// Whether its value is possible.
     pub(crate) fn is_possible(&self) -> bool {
         self.excess() == 0.0
+    }
+
+    /// Whether another value is possible.
+    pub(crate) fn may_be(&self, value: f64) -> bool {
+        self.possible.decades(value) == 0.0
     }
 
     /// Distance from the possible range, in decades.

@@ -18,6 +18,7 @@ fn quantity(value: f64, possible: Range, usual: Range, powers: [i32; 3]) -> Quan
             positions,
             torques,
         },
+        is_by_weight: false,
     }
 }
 
@@ -43,6 +44,17 @@ fn quantities(sampling: f64, acceleration: f64, density: f64) -> Vec<Quantity> {
 
 fn unit(quantities: &[Quantity], is_single: bool) -> Option<&'static str> {
     explanation(quantities, BOTH, is_single).map(|unit_error: &UnitError| unit_error.unit)
+}
+
+#[test]
+fn masses_that_gravity_determines_do_not_hide_a_unit_of_time() {
+    // In milliseconds the motion is quasi-static, and a mass of usual density is weighed.
+    let mut quantities = quantities(1.0, 6e-6, 6.0);
+    quantities[1].possible.low = 1e-3;
+    quantities[2].possible.low = 0.01;
+    assert_eq!(unit(&quantities, false), None);
+    quantities[2].is_by_weight = true;
+    assert_eq!(unit(&quantities, false), Some("milliseconds"));
 }
 
 #[test]

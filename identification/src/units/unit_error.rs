@@ -94,6 +94,13 @@ impl UnitError {
         })
     }
 
+    /// Values that a quantity may have without the unit error.
+    fn corrected(&self, quantity: &Quantity) -> impl Iterator<Item = f64> {
+        let by_weight = quantity.is_by_weight && self.signal == Signal::Time;
+        let by_weight = by_weight.then_some(quantity.value);
+        std::iter::once(quantity.value / self.on(quantity)).chain(by_weight)
+    }
+
     /// Whether it is possible for a robot with such drives.
     const fn fits(&self, kinds: Kinds) -> bool {
         match self.signal {
@@ -112,32 +119,27 @@ pub(crate) fn explanation(
     kinds: Kinds,
     is_single: bool,
 ) -> Option<&'static UnitError> {
-    let unusual = |unit_error: Option<&UnitError>| -> f64 {
+    let unusual = |unit_error: &UnitError| -> f64 {
         let of = |one: &Quantity| {
-            one.unusual(one.value / unit_error.map_or(1.0, |unit_error| unit_error.on(one)))
+            let values = unit_error.corrected(one).map(|value| one.unusual(value));
+            values.fold(f64::INFINITY, f64::min)
         };
         quantities.iter().map(of).sum()
     };
     let resolves = |unit_error: &UnitError| {
-        let after = |one: &Quantity| Quantity {
-            value: one.value / unit_error.on(one),
-            ..one.clone()
-        };
-        quantities.iter().all(|one| after(one).is_possible())
+        let is_possible = |one: &Quantity| unit_error.corrected(one).any(|value| one.may_be(value));
+        quantities.iter().all(is_possible)
     };
     let all = UNIT_ERRORS.iter().enumerate().filter(|(_, unit_error)| {
         unit_error.fits(kinds)
             && !(is_single && unit_error.signal == Signal::Time)
             && resolves(unit_error)
     });
-    let judged = all.map(|(rank, unit_error)| {
-        (
-            unusual(Some(unit_error)) + LESS_USUAL * rank as f64,
-            unit_error,
-        )
-    });
+    let judged =
+        all.map(|(rank, unit_error)| (unusual(unit_error) + LESS_USUAL * rank as f64, unit_error));
     let (left, best) = judged.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (left + NEARER < unusual(None)).then_some(best)
+    let logged: f64 = quantities.iter().map(|one| one.unusual(one.value)).sum();
+    (left + NEARER < logged).then_some(best)
 }
 
 /// Usual sampling frequencies, Hz.

@@ -15,6 +15,8 @@ pub(crate) struct Correlation {
     pub(crate) actuators: (usize, usize),
     /// σ_kl/√(σ_kk σ_ll).
     pub(crate) value: f64,
+    /// σ_kl.
+    pub(crate) covariance: f64,
     /// Size by standard deviation, and the degrees of freedom of the latter.
     pub(crate) strength: f64,
     pub(crate) freedom: f64,
@@ -79,6 +81,7 @@ impl Scores {
         (sound && is_determined).then(|| Correlation {
             actuators: (first, second),
             value: sizes[count - 1] / scale,
+            covariance: sizes[count - 1],
             strength,
             freedom,
             probability: fisher_tail(strength * strength, 1.0, freedom),

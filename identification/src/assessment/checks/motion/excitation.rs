@@ -59,16 +59,7 @@ fn of_model(context: &Context<'_>, projection: usize, estimate: &Estimate) -> Ch
     let directions = noise
         .and_then(Option::as_ref)
         .and_then(|noise| noise.directions(system, &estimate.weights, &columns, &values));
-    let is_basic = !context.settings.checks.has_fault_hypotheses();
     let Some(directions) = directions else {
-        if is_basic && spoiled.is_empty() {
-            let words = "the equations separate all columns; position noise needs `--checks all`";
-            return new(String::from(words));
-        }
-        if is_basic {
-            let check = new(description(context, &spoiled, &inertias));
-            return refused(estimate, check, spoiled, &inertias);
-        }
         let words = "whether the runs move every coordinate is not tested: the regressor cannot be evaluated with noise in the positions";
         return new(String::from(words)).found();
     };
@@ -187,7 +178,7 @@ fn description(context: &Context<'_>, spoiled: &[String], inertias: &[String]) -
     };
     if spoiled == inertias {
         return format!(
-            "the motion is quasi-static, so inertia forces are negligible and {} not identifiable; weights and friction are. Record faster runs, or hold the values from CAD by `known` of [identification]",
+            "the motion is quasi-static, so inertia forces are negligible and {} not identifiable; weights and friction are. Record faster runs, or hold values from CAD by `held` of [prior]",
             if inertias.len() == 1 {
                 format!("{} is", listed(inertias))
             } else {

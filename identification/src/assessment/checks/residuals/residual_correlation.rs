@@ -1,6 +1,11 @@
 //! Tests whether the residuals of two actuators are correlated.
 //!
 //! An overactuated robot is not tested: its residual is that of the platform projection.
+//!
+//! Position errors of a robot with coupled axes correlate the residuals, too: an error of one
+//! position is an acceleration in the equations of both actuators. That covariance falls with the
+//! fifth power of the bandwidth, that of white torque noise with the first power, and that of a
+//! slow force hardly at all. So a correlation is confirmed by a test in half the band.
 
 use crate::{
     assessment::{
@@ -18,6 +23,12 @@ use overact_logs::{Error, significant};
 
 /// Smaller correlations are ignored.
 const SMALLEST: f64 = 0.1;
+
+/// Fraction of the covariance that must remain in half the band.
+///
+/// Half of the covariance of white noise remains there, and a thirty-second of that of white position
+/// errors.
+const REMAINING: f64 = 0.35;
 
 /// Tests all pairs of actuators.
 pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
@@ -37,6 +48,10 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     let beyond = |one: &&Correlation| one.probability < level && one.value.abs() >= SMALLEST;
     let most_significant = pairs.iter().filter(beyond);
     let most_significant = most_significant.max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
+    let is_confirmed = match most_significant {
+        Some(own) => remains_in_half_the_band(context, own)?,
+        None => false,
+    };
     let names = context.model.info().actuators;
     let name = |actuator: usize| names.get(actuator).copied().unwrap_or_default();
     let shown = most_significant.unwrap_or(most);
@@ -47,9 +62,10 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         shown.strength
     );
     let words = match most_significant {
-        Some(_) => format!(
+        Some(_) if is_confirmed => format!(
             "{found}. The model lacks an effect on both: an external force, a cable, crosstalk between current measurements, or an error of the geometry. Joint torques that are sums of the same motor currents are correlated, too"
         ),
+        Some(_) => format!("{found}, as by position errors: little of it remains in half the band"),
         None => String::from("the residuals of the actuators are uncorrelated"),
     };
     let check = Check::new(CheckKind::ResidualCorrelation, About::Fit, words)
@@ -59,10 +75,23 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
             format!("{}, and a correlation of {SMALLEST}", origin(tests)),
         )
         .shown_by(evidence(&pairs, &name));
-    Ok(vec![match most_significant {
-        Some(_) => check.found(),
-        None => check,
-    }])
+    Ok(vec![if is_confirmed { check.found() } else { check }])
+}
+
+/// Whether enough of a covariance remains in half the band, or half the band cannot be tested.
+fn remains_in_half_the_band(context: &Context<'_>, found: &Correlation) -> Result<bool, Error> {
+    let Some(narrow) = (context.narrow)()? else {
+        return Ok(true);
+    };
+    if context
+        .scores
+        .is_none_or(|own| narrow.narrower <= own.narrower)
+    {
+        return Ok(true);
+    }
+    let pairs = narrow.correlations();
+    let same = pairs.iter().find(|one| one.actuators == found.actuators);
+    Ok(same.is_none_or(|one| one.covariance / found.covariance >= REMAINING))
 }
 
 /// Plot of each actuator's correlations with the later ones.

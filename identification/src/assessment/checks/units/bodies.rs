@@ -53,6 +53,9 @@ impl Lengths {
     }
 }
 
+/// Power of a length that converts an inertia to a density.
+const INERTIA: i32 = 5;
+
 /// Power of a length that converts a parameter to a density.
 ///
 /// Masses have 3, first moments 4, inertias 5, friction `None`.
@@ -60,7 +63,7 @@ fn power(unit: &str) -> Option<i32> {
     match unit {
         "kg" => Some(3),
         "kg m" => Some(4),
-        unit if unit.starts_with("kg m") && unit.chars().count() <= 6 => Some(5),
+        unit if unit.starts_with("kg m") && unit.chars().count() <= 6 => Some(INERTIA),
         _ => None,
     }
 }
@@ -94,11 +97,11 @@ fn densities(
         let column = columns.get(column)?;
         Some(length.powi(power(column.unit)?))
     };
-    let mut densest: Option<(f64, &str)> = None;
-    let mut heaviest: Option<(f64, &str)> = None;
-    let larger = |best: &mut Option<(f64, _)>, value: f64, name| {
+    let mut densest: Option<(f64, &ParameterEstimate)> = None;
+    let mut heaviest: Option<(f64, &ParameterEstimate)> = None;
+    let larger = |best: &mut Option<(f64, _)>, value: f64, parameter| {
         if best.is_none_or(|(most, _)| value > most) {
-            *best = Some((value, name));
+            *best = Some((value, parameter));
         }
     };
     for one in clear {
@@ -117,13 +120,13 @@ fn densities(
             Some(coefficient.abs() * volume(column, lengths.long)?)
         });
         let whole = own + regrouped.sum::<f64>();
-        let name = one.name.as_str();
-        larger(&mut densest, one.value.abs() / whole, name);
-        larger(&mut heaviest, one.value.abs() / small, name);
+        larger(&mut densest, one.value.abs() / whole, *one);
+        larger(&mut heaviest, one.value.abs() / small, *one);
     }
     // A length that is a travel scales with the positions.
     let by_travel = if lengths.are_described { 0 } else { -3 };
-    let quantity = |name: &str, value: f64, length: f64, possible: Range, usual: Range, moved| {
+    let quantity = |(value, of): (f64, &ParameterEstimate), length: f64, possible, usual, moved| {
+        let name = &of.name;
         let length = overact_logs::significant(length, 3);
         Quantity {
             name: format!("the density implied by `{name}` for a robot of {length} m"),
@@ -136,17 +139,18 @@ fn densities(
                 positions: -1 + moved,
                 torques: 1,
             },
+            is_by_weight: power(&of.unit).is_some_and(|power| power < INERTIA),
         }
     };
-    let densest = densest.map(|(value, name)| {
+    let densest = densest.map(|found| {
         let possible = Range::new(0.0, DENSITIES.high);
         let usual = Range::new(0.0, USUAL_DENSITIES.high);
-        quantity(name, value, lengths.long, possible, usual, 0)
+        quantity(found, lengths.long, possible, usual, 0)
     });
-    let heaviest = heaviest.map(|(value, name)| {
+    let heaviest = heaviest.map(|found| {
         let possible = Range::new(DENSITIES.low, f64::INFINITY);
         let usual = Range::new(USUAL_DENSITIES.low, f64::INFINITY);
-        quantity(name, value, lengths.short, possible, usual, by_travel)
+        quantity(found, lengths.short, possible, usual, by_travel)
     });
     densest.into_iter().chain(heaviest).collect()
 }
@@ -188,5 +192,6 @@ fn by_prior(context: &Context<'_>, clear: &[&ParameterEstimate]) -> Option<Quant
             positions: -1,
             torques: 1,
         },
+        is_by_weight: true,
     })
 }

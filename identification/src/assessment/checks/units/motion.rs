@@ -162,6 +162,7 @@ fn sampling(frequency: f64, scales: &Scales) -> Vec<Quantity> {
         possible: Range::new(0.2, 5e6),
         usual: Range::new(100.0, 2e4),
         powers,
+        is_by_weight: false,
     };
     let described = scales.sampling.map(|described| Quantity {
         name: String::from("the sampling frequency by that of [experiment]"),
@@ -170,6 +171,7 @@ fn sampling(frequency: f64, scales: &Scales) -> Vec<Quantity> {
         possible: Range::new(0.0, f64::INFINITY),
         usual: Range::new(0.1, 10.0),
         powers,
+        is_by_weight: false,
     });
     std::iter::once(own).chain(described).collect()
 }
@@ -186,6 +188,7 @@ fn by_limit(drive: &str, ratio: f64) -> Quantity {
             torques: 1,
             ..Powers::default()
         },
+        is_by_weight: false,
     }
 }
 
@@ -234,6 +237,7 @@ impl Drive {
                 possible: Range::new(0.0, SOUND),
                 usual: Range::new(0.01, 20.0),
                 powers: powers(-1),
+                is_by_weight: false,
             },
             Quantity {
                 name: format!("the acceleration of the tip by {}", self.name),
@@ -242,6 +246,7 @@ impl Drive {
                 possible: Range::new(least, LARGEST_ACCELERATION),
                 usual: Range::new(0.05, 300.0),
                 powers: powers(-2),
+                is_by_weight: false,
             },
         ]
     }
@@ -275,6 +280,7 @@ impl Drive {
                 positions: 1,
                 ..Powers::default()
             },
+            is_by_weight: false,
         }
     }
 }
