@@ -182,7 +182,9 @@ pub(crate) fn model(files: &Files, path: &Path, options: &Options) -> Option<(Mo
         pins::planar(&mut model);
     }
     if !model.closures.is_empty() {
-        model = idle::without_idle_pins(&Network::new(files, &model)?).unwrap_or(model);
+        let network = Network::new(files, &model)?;
+        idle::check_rods(files, &network)?;
+        model = idle::without_idle_pins(&network).unwrap_or(model);
         model = translating(&model, tolerance).unwrap_or(model);
     }
     no_balls_in_trees(files, &model)?;

@@ -225,3 +225,66 @@ fn hollow_shape_inertias_match_mujoco() {
         );
     }
 }
+
+#[test]
+fn rods_without_length_are_rejected() {
+    let with = |end: &str| {
+        let text = format!(
+            r#"<mujoco><worldbody>
+<body name="shank">{MASS}<joint name="pitch" axis="0 1 0"/>
+ <body name="foot">{MASS}<joint name="roll" axis="1 0 0"/></body></body>
+<body name="left" pos="0 .03 .2">{MASS}<joint name="left" axis="0 1 0"/>
+ <body name="left_rod" pos="-.05 0 0">{MASS}<joint type="ball"/></body></body>
+<body name="right" pos="0 -.03 .2">{MASS}<joint name="right" axis="0 1 0"/>
+ <body name="right_rod" pos="-.05 0 0">{MASS}<joint type="ball"/></body></body>
+</worldbody><equality><connect body1="left_rod" body2="foot" anchor="0 0 -.2"/>
+<connect body1="right_rod" body2="foot" anchor="0 0 {end}"/></equality>
+<actuator><motor joint="left"/><motor joint="right"/></actuator></mujoco>"#
+        );
+        read_text("robot.xml", &text, &Options::default())
+    };
+    assert!(with("-.2").is_ok());
+    for end in ["0", "-1e-9", "-2.1e-8"] {
+        let errors = with(end).expect_err(end);
+        assert!(
+            errors.contains("both ends of `right_rod` are at the same point"),
+            "{errors}"
+        );
+    }
+}
+
+#[test]
+fn open_welds_between_neighbours_are_rejected() {
+    let with = |relative: &str| {
+        let text = format!(
+            r#"<mujoco><worldbody>
+<body name="upper">{MASS}<joint name="shoulder" axis="0 1 0"/>
+ <body name="lower" pos=".2 0 0">{MASS}<joint name="elbow" axis="1 0 0"/></body></body>
+</worldbody><equality><weld body1="lower" body2="upper" relpose="{relative} 1 0 0 0"/></equality>
+<actuator><motor joint="shoulder"/></actuator></mujoco>"#
+        );
+        read_text("robot.xml", &text, &Options::default())
+    };
+    assert!(with("-.2 0 0").is_ok(), "{:?}", with("-.2 0 0").err());
+    let errors = with(".2 0 0").expect_err("open by 0.4 m");
+    assert!(errors.contains("0.4"), "{errors}");
+}
+
+#[test]
+fn welds_without_scale_of_torques_hold_points() {
+    let with = |scale: &str| {
+        let equality = format!(r#"<weld body1="coupler" body2="rocker" anchor="0 0 .2" {scale}/>"#);
+        let text = bar("", "").replace(
+            r#"<connect body1="coupler" body2="rocker" anchor=".3 0 .1"/>"#,
+            &equality,
+        );
+        assert_ne!(text, bar("", ""));
+        read_text("robot.xml", &text, &Options::default())
+    };
+    let held = with(r#"torquescale="0""#).expect("a four-bar");
+    let closed = read_text("robot.xml", &bar("", ""), &Options::default()).expect("a four-bar");
+    let coordinates = |imported: &Imported| imported.text.matches("actuated = true").count();
+    assert_eq!(coordinates(&held), coordinates(&closed));
+    let rigid = with("");
+    assert_ne!(rigid.map(|own| own.text).ok(), Some(held.text));
+}

@@ -25,8 +25,7 @@ class Engine:
         self.model.opt.gravity[:] = description.toml["gravity"]
         self.followers = followers_of(self.model)
         # MuJoCo leaves out the inertia that a tendon couples between branches of the tree.
-        self.rotors = fixed_tendons(self.model), self.model.tendon_armature.copy()
-        self.model.tendon_armature[:] = 0
+        self.rotors = fixed_tendons(self.model), taken_armature(self.model)
         self.data = mujoco.MjData(self.model)
         self.description = description
         self.carried = description.carried()
@@ -45,7 +44,11 @@ class Engine:
             if joint >= 0:
                 data.qpos[model.jnt_qposadr[joint]] = value
         loose = (int(mujoco.mjtJoint.mjJNT_BALL), int(mujoco.mjtJoint.mjJNT_FREE))
-        balls = [d for d in range(model.nv) if int(model.jnt_type[model.dof_jntid[d]]) in loose]
+        balls = [
+            dof
+            for dof in range(model.nv)
+            if int(model.jnt_type[model.dof_jntid[dof]]) in loose and not self.is_held(model.dof_bodyid[dof])
+        ]
         for _ in range(20):
             mujoco.mj_forward(model, data)
             gap, rows = self.closure()
@@ -95,11 +98,11 @@ class Engine:
         yield model.body(body).name, self.data.xmat[body].reshape(3, 3)
 
     def closure(self):
-        """Residuals of all connect constraints and their Jacobian."""
+        """Residuals of all active connect constraints and their Jacobian."""
         model, data = self.model, self.data
         gaps, rows = [], []
         for at in range(model.neq):
-            if model.eq_type[at] != mujoco.mjtEq.mjEQ_CONNECT:
+            if model.eq_type[at] != mujoco.mjtEq.mjEQ_CONNECT or not model.eq_active0[at]:
                 continue
             a, b = model.eq_obj1id[at], model.eq_obj2id[at]
             if model.eq_objtype[at] == mujoco.mjtObj.mjOBJ_SITE:
@@ -256,16 +259,43 @@ def fixed_tendons(model):
     return lengths
 
 
+def taken_armature(model):
+    """Armature of tendons and of their actuators, which is zero in the model afterwards."""
+    armature = model.tendon_armature.copy()
+    model.tendon_armature[:] = 0
+    for actuator in np.flatnonzero(model.actuator_trntype == mujoco.mjtTrn.mjTRN_TENDON):
+        armature[model.actuator_trnid[actuator, 0]] += model.actuator_gear[actuator, 0] ** 2 * model.actuator_armature[actuator]
+        model.actuator_armature[actuator] = 0
+    return armature
+
+
 def followers_of(model):
-    """Leader, factor and offset of joints by name, from the joint equalities."""
+    """Leader, factor and offset of joints by name, from active equalities of joints and fixed tendons."""
     found = {}
+    lengths = fixed_tendons(model)
     for at in range(model.neq):
-        if model.eq_type[at] != mujoco.mjtEq.mjEQ_JOINT or model.eq_obj2id[at] < 0:
+        row = np.zeros(model.nv)
+        own, other, (offset, factor) = model.eq_obj1id[at], model.eq_obj2id[at], model.eq_data[at][:2]
+        is_joint = model.eq_type[at] == mujoco.mjtEq.mjEQ_JOINT
+        if is_joint:
+            row[model.jnt_dofadr[own]] = 1
+            if other >= 0:
+                row[model.jnt_dofadr[other]] -= factor
+        elif model.eq_type[at] == mujoco.mjtEq.mjEQ_TENDON:
+            row += lengths[own] - (factor * lengths[other] if other >= 0 else 0)
+        moved = np.flatnonzero(row)
+        if not model.eq_active0[at] or len(moved) != 2:
             continue
-        own, leader = model.eq_obj1id[at], model.eq_obj2id[at]
-        offset, factor = model.eq_data[at][:2]
-        references = [model.qpos0[model.jnt_qposadr[joint]] for joint in (own, leader)]
-        found[model.joint(own).name] = (model.joint(leader).name, factor, offset + references[0] - factor * references[1])
+        # row @ (q - q0) = offset. A joint equality names its follower. Of a tendon's joints, one without a
+        # leader follows.
+        joints = list(model.dof_jntid[moved])
+        if joints[0] != own if is_joint else model.joint(joints[0]).name in found:
+            joints.reverse()
+        weights = row[model.jnt_dofadr[joints]]
+        references = model.qpos0[model.jnt_qposadr[joints]]
+        ratio = -weights[1] / weights[0]
+        follower, leader = (model.joint(joint).name for joint in joints)
+        found[follower] = (leader, ratio, offset / weights[0] + references[0] - ratio * references[1])
     return found
 
 

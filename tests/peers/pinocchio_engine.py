@@ -188,28 +188,30 @@ class Engine:
 
 
 def with_universal_joints(file):
-    """The tree of a URDF, with the universal joints that `robot.yaml` next to it makes of others."""
+    """The tree of a URDF, with the universal and ball joints that `robot.yaml` next to it makes of others."""
     root = ElementTree.parse(file).getroot()
     beside = Path(file).with_name("robot.yaml")
-    text = beside.read_text() if beside.exists() else ""
+    text = re.sub(r"#.*", "", beside.read_text()) if beside.exists() else ""
     lists = {key: re.findall(r"[\w.-]+", value) for key, value in re.findall(r"^(joint_name|joint_type):\s*\[(.*?)\]", text, re.M | re.S)}
     for name, kind in zip(lists.get("joint_name", []), lists.get("joint_type", [])):
         joint = root.find(f"joint[@name='{name}']")
-        letters = {"CARDAN": "XY"}.get(kind, kind.removeprefix("UJOINT_"))
-        if len(letters) != 2 or joint is None:
+        letters = {"CARDAN": "XY", "SPHERICAL": "XYZ"}.get(kind, kind.removeprefix("UJOINT_"))
+        if len(letters) not in (2, 3) or joint is None or joint.get("type") == "spherical":
             continue
-        first, second_axis = letters
         axes = {"X": "1 0 0", "Y": "0 1 0", "Z": "0 0 1"}
         child = joint.find("child").get("link")
-        ElementTree.SubElement(root, "link", name=f"{child}_{first}")
-        second = ElementTree.SubElement(root, "joint", name=f"{name}_{second_axis}", type="continuous")
-        ElementTree.SubElement(second, "parent", link=f"{child}_{first}")
-        ElementTree.SubElement(second, "child", link=child)
-        ElementTree.SubElement(second, "axis", xyz=axes[second_axis])
-        joint.set("name", f"{name}_{first}")
+        links = [f"{child}_{letter}" for letter in letters[:-1]] + [child]
+        for link in links[:-1]:
+            ElementTree.SubElement(root, "link", name=link)
+        for letter, before, after in zip(letters[1:], links, links[1:]):
+            own = ElementTree.SubElement(root, "joint", name=f"{name}_{letter}", type="continuous")
+            ElementTree.SubElement(own, "parent", link=before)
+            ElementTree.SubElement(own, "child", link=after)
+            ElementTree.SubElement(own, "axis", xyz=axes[letter])
+        joint.set("name", f"{name}_{letters[0]}")
         joint.set("type", "continuous")
-        joint.find("child").set("link", f"{child}_{first}")
+        joint.find("child").set("link", links[0])
         for axis in joint.findall("axis"):
             joint.remove(axis)
-        ElementTree.SubElement(joint, "axis", xyz=axes[first])
+        ElementTree.SubElement(joint, "axis", xyz=axes[letters[0]])
     return root

@@ -354,10 +354,10 @@ const RULES: &[Rule] = &[
         Honoured,
         &[
             (
-                "name class active body1 body2 site1 site2 anchor relpose",
+                "name class active body1 body2 site1 site2 anchor relpose torquescale",
                 Honoured,
             ),
-            ("torquescale solref solimp", SOFTNESS),
+            ("solref solimp", SOFTNESS),
         ],
     ),
     rule(

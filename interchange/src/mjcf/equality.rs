@@ -99,6 +99,9 @@ fn closure_kind(
 ) -> Option<ClosureKind> {
     let files = reader.files;
     let is_point = element.name == "connect";
+    // Without the scale of its torques, a weld holds a point alone.
+    let torque_scale = element.numbers::<1>(files, "torquescale");
+    let holds_angles = torque_scale.is_none_or(|[scale]| scale != 0.0);
     if element.get("site1").is_some() || element.get("site2").is_some() {
         let site = |key: &str| {
             let name = element.required(files, key)?;
@@ -112,7 +115,7 @@ fn closure_kind(
         };
         let (a, b) = (site("site1")?, site("site2")?);
         let (bodies, at) = ([a.0, b.0], [a.1, b.1]);
-        return Some(if is_point {
+        return Some(if is_point || !holds_angles {
             ClosureKind::Point {
                 bodies,
                 at: at.map(|f| Point3::from(f.translation.vector)),
@@ -162,9 +165,14 @@ fn closure_kind(
         }
         None => relative.inverse(),
     };
-    Some(ClosureKind::Weld {
-        bodies,
-        at: [second_in_first * second, second],
+    let at = [second_in_first * second, second];
+    Some(if holds_angles {
+        ClosureKind::Weld { bodies, at }
+    } else {
+        ClosureKind::Point {
+            bodies,
+            at: at.map(|frame| Point3::from(frame.translation.vector)),
+        }
     })
 }
 

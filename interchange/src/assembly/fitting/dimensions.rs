@@ -146,6 +146,8 @@ pub(super) fn report(model: &mut Model, dimensions: &[Dimension], changes: &[f64
 const ROUNDING: f64 = 1e-12;
 
 /// Largest extent of the joints and closures of all loops, m.
+///
+/// If no loop moves, all joints and closures count.
 pub(crate) fn size(model: &Model, state: &State) -> f64 {
     let of_body = grouped(model);
     let edges = edges(model, &of_body);
@@ -153,10 +155,11 @@ pub(crate) fn size(model: &Model, state: &State) -> f64 {
     let ends: Vec<[usize; 2]> = edges.iter().map(|edge| edge.groups).collect();
     let blocks = Blocks::new(&edges_at(count, &edges), &ends);
     let carried = model.carried();
+    let has_loops = blocks.is_bridge.iter().any(|is_bridge| !is_bridge);
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
     for (at, edge) in edges.iter().enumerate() {
-        if blocks.is_bridge[at] {
+        if has_loops && blocks.is_bridge[at] {
             continue;
         }
         let point: Point3<f64> = match edge.origin {
@@ -174,6 +177,7 @@ pub(crate) fn size(model: &Model, state: &State) -> f64 {
             high[axis] = high[axis].max(point[axis]);
         }
     }
-    let squares = low.iter().zip(high).map(|(low, high)| (high - low).powi(2));
+    let squares = low.iter().zip(high);
+    let squares = squares.map(|(low, high)| (high - low).max(0.0).powi(2));
     squares.sum::<f64>().sqrt().max(1e-9)
 }
