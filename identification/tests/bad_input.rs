@@ -225,8 +225,8 @@ fn broken_mat_files_are_errors() {
         "log.mat: the HDF5 file can't be read: "
     } else {
         "log.mat: the file is of MATLAB's version 7.3, which is HDF5, which this build of overact does not support\n  help: \
-         build it with the feature `hdf5`: `cargo run --release --features hdf5 -- …`; or save it in MATLAB with \
-         `save(..., '-v7')`"
+         install the command with the feature `hdf5`: `cargo install --locked overact-cli --features hdf5`, or \
+         `cargo run --release --features hdf5 -- …` in a clone; or save it in MATLAB with `save(..., '-v7')`"
     };
     assert!(output.starts_with(expected), "{output}");
     let Some(path) = common::shared("data/emps/DATA_EMPS.mat") else {

@@ -228,7 +228,13 @@ pub(crate) fn no_columns(file: &str, missing: &[&str], what: &str, existing: &st
 /// Suggests existing names for missing ones.
 pub(crate) fn guesses(missing: &[&str], names: &[&str]) -> Option<String> {
     let near = missing.iter().filter_map(|name| {
-        let near = suggestion(name, names.iter().copied())?;
+        // A name with its unit, as `q [deg]`, is meant rather than a similar one.
+        let is_with_unit = |own: &&str| {
+            let rest = own.strip_prefix(name);
+            rest.is_some_and(|rest| rest.trim_start().starts_with(['[', '(', '/']))
+        };
+        let with_unit = names.iter().copied().find(is_with_unit);
+        let near = with_unit.or_else(|| suggestion(name, names.iter().copied()))?;
         Some(format!("`{}` for `{}`", shown(near), shown(name)))
     });
     let near: Vec<String> = near.collect();

@@ -144,6 +144,11 @@ fn ambiguous_decimal_commas_are_rejected() {
         "log.txt: there are no columns `q_1`, `tau_1`; the file has `time`, `q`, `1`, `tau`, `1`\n  help: \
          did you mean `q` for `q_1`, `tau` for `tau_1`?"
     );
+    assert_eq!(
+        refused(b"time,q_1 [deg],tau_1\n0,0,0\n0.1,0,0\n", &named()),
+        "log.txt: there is no column `q_1`; the file has `time`, `q_1 [deg]`, `tau_1`\n  help: \
+         did you mean `q_1 [deg]` for `q_1`?"
+    );
 }
 
 #[test]

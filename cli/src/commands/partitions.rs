@@ -105,6 +105,7 @@ fn text(study: &Study) -> String {
     rows.extend(partitions.map(|row| cells(row, row.kept_actuators.join(", "))));
     let mut text = columns(&rows, &[true]);
     text += "ranks: by conditioning, parameters, prediction; unreliable choices are last\n";
+    text += "`docs/cli.md` explains the columns\n";
     for warning in &study.warnings {
         paragraph(&mut text, "", &format!("warning: {warning}"));
     }

@@ -102,7 +102,7 @@ impl<'a> Payloads<'a> {
                 }
                 None if one.loaded && !self.names.is_empty() => {
                     let message =
-                        "the robot has several payloads: this run does not name its payload";
+                        "the robot's payloads have names, and this run does not name its payload";
                     let help = format!("write NAME=LOG, the name being one of {list}");
                     Some(
                         Problem::new(Code::LOG_PAYLOAD, message)

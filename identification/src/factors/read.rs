@@ -75,7 +75,12 @@ pub fn read_factors(path: &Path) -> Result<ReadFactors, Damaged> {
         let message = format!("the file can't be read as Parquet: {error}");
         Damaged::file(Reason::Unreadable, message)
     };
-    let file = File::open(path).map_err(|error| unreadable(&error))?;
+    let file = File::open(path).map_err(|error| {
+        Damaged::file(
+            Reason::Unreadable,
+            format!("the file can't be opened: {error}"),
+        )
+    })?;
     let reader = SerializedFileReader::new(file).map_err(|error| unreadable(&error))?;
     check_columns(&reader)?;
     let mut rows = Vec::new();

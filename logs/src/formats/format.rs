@@ -217,7 +217,7 @@ fn of(beginning: &[u8]) -> Result<&'static Format, Problem> {
     {
         let message = format!("{what}, which this build of overact does not support");
         return Err(Problem::new(Code::LOG_FORMAT, message).help(format!(
-            "build it with the feature `{feature}`: `cargo run --release --features {feature} -- …`; or {help}"
+            "install the command with the feature `{feature}`: `cargo install --locked overact-cli --features {feature}`, or `cargo run --release --features {feature} -- …` in a clone; or {help}"
         )));
     }
     if let Some(format) = FORMATS.iter().find(|format| (format.is)(beginning)) {

@@ -87,10 +87,7 @@ fn listed(names: &[String]) -> String {
         return String::new();
     }
     let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
-    format!(
-        "<p>Usable if the named fault is the cause: {}.</p>",
-        prose(&names.join(", "))
-    )
+    format!("<p>Usable: {}.</p>", prose(&names.join(", ")))
 }
 
 /// Assumptions of a usable result.

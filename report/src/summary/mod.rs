@@ -25,6 +25,9 @@ const LINES: usize = 50;
 /// Smallest number of parameters in a short summary.
 const FEWEST: usize = 10;
 
+/// Up to this many more parameters are shown instead of a line about them.
+const SPARED: usize = 3;
+
 /// Largest number of names in a list of a short summary.
 const NAMES: usize = 24;
 
@@ -62,7 +65,8 @@ pub fn summary(identification: &Identification, page: Option<&str>, extent: Exte
     let motors = motors::motors(&identification.motors);
     let whole = rows.table(rows.count()) + &motors;
     let room = LINES.saturating_sub(above.lines().count() + below.lines().count());
-    if extent == Extent::Whole || whole.lines().count() <= room {
+    let is_nearly_whole = rows.count() <= FEWEST + SPARED;
+    if extent == Extent::Whole || is_nearly_whole || whole.lines().count() <= room {
         return above + &whole + &below;
     }
     let mut motors = String::new();
@@ -261,10 +265,7 @@ fn reasons(
     let mut text = String::new();
     if verdict.grade == Grade::UseListed {
         let listed: Vec<&str> = verdict.listed.iter().map(String::as_str).collect();
-        let sentence = format!(
-            "Usable if the named fault is the cause: {}.",
-            list(&listed, extent)
-        );
+        let sentence = format!("Usable: {}.", list(&listed, extent));
         paragraph(&mut text, "  ", &sentence);
         let estimate = of(identification, verdict.model, verdict.stage);
         let names = estimate.iter().flat_map(|one| &one.parameters);

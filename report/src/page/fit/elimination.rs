@@ -38,7 +38,7 @@ pub(crate) fn section(contents: &Contents<'_>) -> Section {
         }
     }
     if !body.is_empty() {
-        let introduction = "Parameters are cancelled one after the other, each time the one with the largest relative standard deviation. The recommended model is the last one that the data do not refute. The r_σ rule continues until the standard deviations are similar.";
+        let introduction = "Parameters are eliminated one after the other, each time the one with the largest relative standard deviation. The recommended model is the last one that the data do not refute. The r_σ rule continues until the standard deviations are similar.";
         body = paragraph(introduction) + &body;
     }
     Section {

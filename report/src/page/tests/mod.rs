@@ -145,7 +145,7 @@ fn names_are_printed_without_control_characters() {
     assert!(!output.contains(hidden), "{output:?}");
     for words in [
         "platform projection (torques of all actuators): USE IT FOR WHAT IS LISTED",
-        "  Usable if the named fault is the cause: m_platformR.\n",
+        "  Usable: m_platformR.\n",
         "DO NOT USE IT",
         "leg1: clipped",
         "Evidence and plots: report.html",
@@ -262,7 +262,7 @@ fn the_verdict_is_first_and_lists_trusted_parameters() {
     assert!(scope.contains("The gains are right"), "{scope}");
     let verdict = text(element(&document, "verdict"));
     for words in [
-        "Usable if the named fault is the cause: m_platformR.",
+        "Usable: m_platformR.",
         "One parameter is biased. Details.",
         "leg1: clipped. Details.",
         "All base parameters: use it.",
