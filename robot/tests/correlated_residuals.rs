@@ -56,19 +56,22 @@ terms = [
 ]
 "#;
 
-/// Identification from the virtual run, with an error of this amplitude, N m, in
-/// both torques.
+/// Identification from the virtual run, with white noise of this amplitude, N m,
+/// in both torques.
 fn identified(amplitude: f64) -> Identification {
     let robot = Robot::from_text("arm.toml", ARM).expect("a robot");
     let experiment = robot.experiment().expect("an experiment");
     let runs = experiment.runs(&[], &|_, _| {}).expect("runs");
     let run = runs.identified.first().expect("a run");
     let (positions, mut torques) = run.load().expect("numbers");
-    // The frequency is none of the motion.
-    for (row, pair) in torques.chunks_exact_mut(2).enumerate() {
-        let error = (std::f64::consts::TAU * 3.07 * row as f64 / 1000.0).sin();
-        pair[0] += amplitude * error;
-        pair[1] += amplitude * error;
+    let mut random = 1_u64;
+    for pair in torques.chunks_exact_mut(2) {
+        random = random
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        let error = amplitude * ((random >> 11) as f64 / (1_u64 << 52) as f64 - 1.0);
+        pair[0] += error;
+        pair[1] += error;
     }
     let (name, frequency) = (run.name(), run.sampling_frequency());
     let log = Log::new(name, frequency, 2, positions, torques, run.payload()).expect("a log");

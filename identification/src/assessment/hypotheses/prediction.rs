@@ -99,7 +99,8 @@ impl<'a> Prediction<'a> {
         let inputs = [pose, twist, acceleration, &parameters];
         let function = Function::InverseDynamics(Columns::Standard);
         let torques = match evaluate(self.model, function, &inputs, motion.samples) {
-            Err(error) if matches!(error.error, overact::Error::NotOffered { .. }) => {
+            // Parameters of a log in wrong units may be too large for the function.
+            Err(error) if is_unavailable(&error.error) => {
                 return self.inputs_by_regressor(motion, states, interval);
             }
             torques => torques.map_err(at)?,
@@ -448,4 +449,10 @@ pub(super) fn dot(left: &[f64], right: &[f64]) -> f64 {
     }
     let rest = last.iter().zip(end).map(|(a, b)| a * b);
     sums.iter().sum::<f64>() + rest.sum::<f64>()
+}
+
+/// Whether the torques have to be computed by the columns of the model.
+fn is_unavailable(error: &overact::Error) -> bool {
+    use overact::Error::{NotOffered, OutOfRange};
+    matches!(error, NotOffered { .. } | OutOfRange { .. })
 }

@@ -145,9 +145,7 @@ pub(super) fn report(model: &mut Model, dimensions: &[Dimension], changes: &[f64
 /// Changes below this are rounding errors, m or rad.
 const ROUNDING: f64 = 1e-12;
 
-/// Largest extent of the joints and closures of all loops, m.
-///
-/// If no loop moves, all joints and closures count.
+/// Largest extent of the joints and closures of all loops, m, or of all joints without loops.
 pub(crate) fn size(model: &Model, state: &State) -> f64 {
     let of_body = grouped(model);
     let edges = edges(model, &of_body);
@@ -155,29 +153,34 @@ pub(crate) fn size(model: &Model, state: &State) -> f64 {
     let ends: Vec<[usize; 2]> = edges.iter().map(|edge| edge.groups).collect();
     let blocks = Blocks::new(&edges_at(count, &edges), &ends);
     let carried = model.carried();
-    let has_loops = blocks.is_bridge.iter().any(|is_bridge| !is_bridge);
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
-    for (at, edge) in edges.iter().enumerate() {
-        if has_loops && blocks.is_bridge[at] {
-            continue;
-        }
-        let point: Point3<f64> = match edge.origin {
-            Origin::Platform => continue,
-            Origin::Joint(joint) => state.poses[carried[joint]] * model.joints[joint].at,
+    let of_joint = |joint: usize| state.poses[carried[joint]] * model.joints[joint].at;
+    let point = |origin: Origin| -> Option<Point3<f64>> {
+        Some(match origin {
+            Origin::Platform => return None,
+            Origin::Joint(joint) => of_joint(joint),
             Origin::Closure(closure) => match &model.closures[closure].kind {
                 ClosureKind::Point { bodies, at } => state.poses[bodies[0]] * at[0],
                 ClosureKind::Weld { bodies, at } | ClosureKind::Pin { bodies, at } => {
                     (state.poses[bodies[0]] * at[0]).translation.vector.into()
                 }
             },
-        };
-        for axis in 0..3 {
-            low[axis] = low[axis].min(point[axis]);
-            high[axis] = high[axis].max(point[axis]);
-        }
-    }
-    let squares = low.iter().zip(high);
-    let squares = squares.map(|(low, high)| (high - low).max(0.0).powi(2));
-    squares.sum::<f64>().sqrt().max(1e-9)
+        })
+    };
+    let in_loops = edges.iter().zip(&blocks.is_bridge);
+    let in_loops = in_loops.filter(|(_, is_bridge)| !**is_bridge);
+    let of_loops = extent(in_loops.filter_map(|(edge, _)| point(edge.origin)));
+    let size = of_loops.unwrap_or_else(|| {
+        let all = extent((0..model.joints.len()).map(of_joint));
+        all.unwrap_or_default()
+    });
+    size.max(1e-9)
+}
+
+/// Diagonal of the smallest box around points; `None` without points.
+fn extent(points: impl Iterator<Item = Point3<f64>>) -> Option<f64> {
+    let boxed = points.fold(None, |found: Option<[Point3<f64>; 2]>, point| {
+        let [low, high] = found.unwrap_or([point; 2]);
+        Some([low.inf(&point), high.sup(&point)])
+    });
+    boxed.map(|[low, high]| (high - low).norm())
 }
