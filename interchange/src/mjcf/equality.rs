@@ -98,10 +98,9 @@ fn closure_kind(
     poses: &[Pose],
 ) -> Option<ClosureKind> {
     let files = reader.files;
-    let is_point = element.name == "connect";
-    // Without the scale of its torques, a weld holds a point alone.
-    let torque_scale = element.numbers::<1>(files, "torquescale");
-    let holds_angles = torque_scale.is_none_or(|[scale]| scale != 0.0);
+    let is_connect = element.name == "connect";
+    // A weld whose torques have the scale zero holds a point alone.
+    let is_point = is_connect || element.numbers::<1>(files, "torquescale") == Some([0.0]);
     if element.get("site1").is_some() || element.get("site2").is_some() {
         let site = |key: &str| {
             let name = element.required(files, key)?;
@@ -115,7 +114,7 @@ fn closure_kind(
         };
         let (a, b) = (site("site1")?, site("site2")?);
         let (bodies, at) = ([a.0, b.0], [a.1, b.1]);
-        return Some(if is_point || !holds_angles {
+        return Some(if is_point {
             ClosureKind::Point {
                 bodies,
                 at: at.map(|f| Point3::from(f.translation.vector)),
@@ -142,7 +141,7 @@ fn closure_kind(
     element.required(files, "body1")?;
     let bodies = [body("body1")?, body("body2")?];
     let relative = poses[bodies[1]].inv_mul(&poses[bodies[0]]);
-    if is_point {
+    if is_connect {
         element.required(files, "anchor")?;
         let anchor = Point3::from(element.numbers(files, "anchor")?);
         return Some(ClosureKind::Point {
@@ -166,13 +165,13 @@ fn closure_kind(
         None => relative.inverse(),
     };
     let at = [second_in_first * second, second];
-    Some(if holds_angles {
-        ClosureKind::Weld { bodies, at }
-    } else {
+    Some(if is_point {
         ClosureKind::Point {
             bodies,
             at: at.map(|frame| Point3::from(frame.translation.vector)),
         }
+    } else {
+        ClosureKind::Weld { bodies, at }
     })
 }
 

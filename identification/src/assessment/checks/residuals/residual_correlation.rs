@@ -13,6 +13,7 @@ use crate::{
         checks::{
             Context,
             level::{level, origin},
+            torques::half_band::scores_in_half_the_band,
         },
         evidence::{Axis, Curve, Evidence},
         hypotheses::Correlation,
@@ -80,15 +81,9 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 
 /// Whether enough of a covariance remains in half the band, or half the band cannot be tested.
 fn remains_in_half_the_band(context: &Context<'_>, found: &Correlation) -> Result<bool, Error> {
-    let Some(narrow) = (context.narrow)()? else {
+    let Some(narrow) = scores_in_half_the_band(context)? else {
         return Ok(true);
     };
-    if context
-        .scores
-        .is_none_or(|own| narrow.narrower <= own.narrower)
-    {
-        return Ok(true);
-    }
     let pairs = narrow.correlations();
     let same = pairs.iter().find(|one| one.actuators == found.actuators);
     Ok(same.is_none_or(|one| one.covariance / found.covariance >= REMAINING))

@@ -10,12 +10,21 @@
 
 use crate::assessment::{
     checks::{Context, fault_hypotheses::only},
-    hypotheses::FaultHypothesis,
+    hypotheses::{FaultHypothesis, Scores},
 };
 use overact_logs::Error;
 
 /// Fraction of the size that must remain in half the band if there is a filter.
 const REMAINING: f64 = 0.5;
+
+/// Scores in half the band; `None` if it cannot be tested.
+pub(crate) fn scores_in_half_the_band(context: &Context<'_>) -> Result<Option<Scores>, Error> {
+    let is_narrower = |narrow: &Scores| {
+        let own = context.scores;
+        own.is_some_and(|own| narrow.narrower > own.narrower)
+    };
+    Ok((context.narrow)()?.filter(is_narrower))
+}
 
 /// Whether a fault of `size` is also found in half the band.
 ///
@@ -25,15 +34,9 @@ pub(crate) fn confirms(
     hypothesis: FaultHypothesis,
     size: f64,
 ) -> Result<bool, Error> {
-    let Some(narrow) = (context.narrow)()? else {
+    let Some(narrow) = scores_in_half_the_band(context)? else {
         return Ok(true);
     };
-    if context
-        .scores
-        .is_none_or(|own| narrow.narrower <= own.narrower)
-    {
-        return Ok(true);
-    }
     let Some(one) = only(&narrow, hypothesis) else {
         return Ok(true);
     };
