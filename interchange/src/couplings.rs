@@ -93,13 +93,20 @@ impl Couplings {
             }
             let slot = &mut relations[coupling.follower];
             if let Some(first) = slot {
-                let message = format!(
-                    "`{}` is coupled to two joints, `{}` and `{}`",
-                    name(coupling.follower),
-                    name(first.leader),
-                    name(coupling.leader)
-                );
-                let help = "couple each joint to one other joint: exchange the two joints in one of the relations";
+                let (own, leader) = (name(coupling.follower), name(coupling.leader));
+                let is_repeated = first.leader == coupling.leader;
+                let (message, help) = if is_repeated {
+                    (
+                        format!("`{own}` is coupled to `{leader}` twice"),
+                        "remove one of the two relations",
+                    )
+                } else {
+                    let first = name(first.leader);
+                    (
+                        format!("`{own}` is coupled to two joints, `{first}` and `{leader}`"),
+                        "couple each joint to one other joint: exchange the two joints in one of the relations",
+                    )
+                };
                 files.report(&coupling.place, message, help);
                 continue;
             }

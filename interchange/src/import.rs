@@ -10,13 +10,12 @@ use crate::{
         network::Network,
         parasitic, simple, undriven,
     },
-    bounds,
+    bounds, choices,
     experiment::{self, Experiment},
     files::{Errors, Files, Place},
     format::Format,
     mjcf,
     model::Model,
-    motors,
     options::Options,
     origins::Origins,
     par,
@@ -27,9 +26,6 @@ use crate::{
 };
 use overact_description::diagnostic::Diagnostics;
 use std::path::{Path, PathBuf};
-
-/// Largest home position of an option, rad or m.
-const LARGEST_HOME: f64 = 1e6;
 
 /// A description generated from a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -163,9 +159,9 @@ fn misfits(files: &Files, model: &Model) -> Vec<ClosureMisfit> {
 pub(crate) fn model(files: &Files, path: &Path, options: &Options) -> Option<(Model, Format)> {
     let file = files.read(path, None)?;
     let (mut model, format) = read(files, file, options)?;
-    check_options(files, format, options)?;
+    choices::check(files, format, options)?;
     bounds::check(files, &model)?;
-    choose(files, &mut model, options)?;
+    choices::apply(files, &mut model, options)?;
     simple::drop_closures_on_one_body(files, &mut model);
     files.is_clean().then_some(())?;
     free_bodies::check(files, &model)?;
@@ -246,26 +242,6 @@ impl<'m> Robot<'m> {
     }
 }
 
-/// Rejects options of other formats, which would have no effect; `None` after an error.
-fn check_options(files: &Files, format: Format, options: &Options) -> Option<()> {
-    let foreign = [
-        (
-            "--value",
-            !options.values.is_empty(),
-            Format::Par,
-            ".par files",
-        ),
-        ("--model", options.model.is_some(), Format::Sdf, "SDFormat"),
-    ];
-    for (option, is_given, own, name) in foreign {
-        if is_given && format != own {
-            let message = format!("`{option}` is an option for {name} only");
-            files.refuse(message, "leave it out");
-        }
-    }
-    files.is_clean().then_some(())
-}
-
 fn read(files: &Files, file: usize, options: &Options) -> Option<(Model, Format)> {
     let text = files.text(file);
     let start = text.trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n']);
@@ -313,110 +289,6 @@ fn is_table(text: &str) -> bool {
         let start = line.trim_start().get(..2);
         start.is_some_and(|start| start.eq_ignore_ascii_case("NJ")) && line.contains('=')
     })
-}
-
-/// Applies the user's choice of actuated joints and home positions.
-fn choose(files: &Files, model: &mut Model, options: &Options) -> Option<()> {
-    let find = |model: &Model, name: &str| {
-        let found = model.joint_named(name);
-        if found.is_none() {
-            let names = model.joints.iter().map(|joint| joint.name.as_str());
-            let help = files.joint_help(name, names);
-            files.refuse(format!("there is no joint `{name}`"), help);
-        }
-        found
-    };
-    if let Some(names) = &options.actuated {
-        model
-            .joints
-            .iter_mut()
-            .for_each(|joint| joint.actuated = false);
-        for name in names {
-            let at = find(model, name)?;
-            model.joints[at].actuated = true;
-        }
-    } else if !model.says_motors {
-        if !model.closures.is_empty() {
-            let help = "name them: `--actuated JOINT,JOINT`";
-            files.refuse(
-                "the file does not say which joints of its loops are driven",
-                help,
-            );
-            return None;
-        }
-        model
-            .joints
-            .iter_mut()
-            .for_each(|joint| joint.actuated = joint.follow.is_none());
-        model
-            .notes
-            .push("The file has no motors: every joint has one here.".to_owned());
-    }
-    motors::lead_by_driven_joints(model);
-    motors::resolve(files, model, options.actuated.is_some());
-    if model.closures.is_empty() {
-        let passive = |joint: &&mut crate::model::Joint| !joint.actuated && joint.follow.is_none();
-        let mut names = Vec::new();
-        for joint in model.joints.iter_mut().filter(passive) {
-            joint.actuated = true;
-            names.push(format!("`{}`", joint.name));
-        }
-        if !names.is_empty() {
-            model.notes.push(format!(
-                "No motor drives {}: without loops every joint needs a torque column; theirs is zero.",
-                names.join(", ")
-            ));
-        }
-    }
-    for (name, position) in &options.home {
-        let at = find(model, name)?;
-        if position.abs() > LARGEST_HOME {
-            let message =
-                format!("the home position {position} of `{name}` is beyond {LARGEST_HOME:e}");
-            files.refuse(message, "give it in rad or m");
-        }
-        model.joints[at].home = *position;
-    }
-    if model.closures.is_empty() {
-        off_limits(model, options);
-    }
-    if model.joints.is_empty() {
-        files.refuse(
-            "the robot has no joint that moves",
-            "add a joint that moves",
-        );
-        return None;
-    }
-    Some(())
-}
-
-/// For serial robots: moves joints whose home is at a limit to the middle of their range.
-///
-/// Otherwise there would be no room for motions about the home configuration.
-fn off_limits(model: &mut Model, options: &Options) {
-    let mut names = Vec::new();
-    for joint in model
-        .joints
-        .iter_mut()
-        .filter(|joint| joint.follow.is_none())
-    {
-        let is_chosen = options.home.iter().any(|(name, _)| *name == joint.name);
-        let Some([low, high]) = joint.range.filter(|_| !is_chosen) else {
-            continue;
-        };
-        let room = 0.05 * (high - low);
-        if joint.home < low + room || joint.home > high - room {
-            joint.home = 0.5 * (low + high);
-            names.push(format!("`{}`", joint.name));
-        }
-    }
-    if !names.is_empty() {
-        let list = names.join(", ");
-        let note = format!(
-            "The file's zero is on or near a limit of {list}: home is in the middle of the range."
-        );
-        model.notes.push(note);
-    }
 }
 
 /// Rejects ball joints in serial robots: every joint of those has a motor in a description.

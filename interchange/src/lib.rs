@@ -40,6 +40,7 @@ mod account;
 mod agreement;
 mod assembly;
 mod bounds;
+mod choices;
 mod couplings;
 mod experiment;
 mod export;

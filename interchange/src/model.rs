@@ -120,8 +120,8 @@ pub(crate) struct Joint {
     pub(crate) tendon_stiffness: f64,
     /// Position at which springs of tendons have their length without force, if it is not home.
     pub(crate) rest: Option<f64>,
-    /// Description of the transmission, for comments.
-    pub(crate) drive: String,
+    /// Descriptions of the gears of its motors, for comments.
+    pub(crate) gears: Vec<String>,
     pub(crate) place: Place,
 }
 
@@ -347,7 +347,7 @@ impl Joint {
             spring: None,
             tendon_stiffness: 0.0,
             rest: None,
-            drive: String::new(),
+            gears: Vec::new(),
             place,
         }
     }

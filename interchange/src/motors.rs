@@ -123,11 +123,15 @@ fn join(motor: &mut Motor, model: &mut Model, is_chosen: bool) {
     motor.ratio *= factor;
     motor.turns = vec![(joint, 1.0)];
     own.actuated |= !is_chosen;
-    if motor.ratio != 1.0 && own.drive.is_empty() {
-        let (name, ratio) = (&motor.name, motor.ratio);
-        own.drive = format!(
-            "Motor `{name}` with gear {ratio}: the joint's torque is {ratio} times its force, `torque_gain` of [data]"
-        );
+    if motor.ratio != 1.0 {
+        let ratio = motor.ratio;
+        let name = match &*motor.name {
+            "" => "A motor".to_owned(),
+            name => format!("Motor `{name}`"),
+        };
+        own.gears.push(format!(
+            "{name} with gear {ratio}: the joint's torque is {ratio} times its force, `torque_gain` of [data]"
+        ));
     }
 }
 

@@ -200,6 +200,14 @@ fn a_joint_coupled_to_two_joints_is_rejected() {
         message.starts_with("4: `j2` is coupled to two joints, `j1` and `j3`"),
         "{message}"
     );
+    let message = errors(
+        "row.xml",
+        &hinges(&["joint1='j2' joint2='j1'", "joint1='j2' joint2='j1'"]),
+    );
+    assert_eq!(
+        message,
+        "4: `j2` is coupled to `j1` twice (remove one of the two relations)\n"
+    );
 }
 
 #[test]

@@ -395,3 +395,13 @@ fn adhesion_acts_on_contacts_and_drives_no_joint() {
     let mut ignored = found.account.ignored.iter();
     assert!(ignored.any(|entry| entry.element == "adhesion"));
 }
+
+#[test]
+fn gears_of_all_motors_of_a_joint_are_described() {
+    let actuators = "<actuator><motor name='first' joint='j1' gear='-5'/>\
+         <velocity name='second' joint='j1' gear='3'/></actuator>";
+    let found = imported("row.xml", &hinges(actuators));
+    for gear in ["Motor `first` with gear -5:", "Motor `second` with gear 3:"] {
+        assert!(found.text.contains(gear), "{gear}: {}", found.text);
+    }
+}

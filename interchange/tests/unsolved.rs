@@ -121,3 +121,39 @@ fn fully_stretched_loops_are_rejected() {
     );
     refused(&text, &["`a` and `b` can't move", "robot.xml:2:", "--home"]);
 }
+
+#[test]
+fn joints_that_closures_hold_are_rejected_by_name() {
+    let text = format!(
+        r#"<mujoco model="held"><worldbody>
+<body name="arm">{MASS}<joint name="arm" axis="0 1 0"/>
+ <body name="hand" pos="0 0 .1">{MASS}<joint name="hand" axis="0 1 0"/></body></body>
+</worldbody><equality><connect body1="hand" body2="arm" anchor=".1 .2 0"/></equality>
+<actuator><motor joint="arm"/></actuator></mujoco>"#
+    );
+    let held = "the closures hold `hand` in place while other joints move";
+    refused(&text, &[held, "robot.xml:3:", "remove the joint"]);
+}
+
+#[test]
+fn impossible_home_positions_are_rejected() {
+    let text = format!(
+        r#"<mujoco model="arm"><worldbody>
+<body name="a">{MASS}<joint name="a" axis="0 1 0"/>
+ <body name="b" pos=".4 0 0">{MASS}<joint name="b" axis="0 1 0"/>
+  <body name="c" pos=".4 0 0">{MASS}<joint name="c" type="ball"/></body></body></body>
+</worldbody><equality><joint joint1="b" joint2="a"/></equality>
+<actuator><motor joint="a"/></actuator></mujoco>"#
+    );
+    let refused = |home: &[(&str, f64)], words: &str| {
+        let message = read(&text, home).expect_err("a home that is rejected");
+        assert!(message.contains(words), "{words}: {message}");
+    };
+    let twice = "`--home` names the joint `a` twice";
+    refused(&[("a", 0.1), ("a", 0.2)], twice);
+    let coupled = "`--home` sets `b`, which is coupled to `a`";
+    refused(&[("b", 0.1)], coupled);
+    refused(&[("c", 0.1)], "`--home` sets the ball joint `c`");
+    let beyond = "the home position 1e300 of `a` is beyond 1e6";
+    refused(&[("a", 1e300)], beyond);
+}

@@ -407,6 +407,8 @@ fn impossible_cables_are_rejected() {
         "name = \"c1\"\nhome = { length = 0.5 }\n",
     );
     refused(home, "a cable has no `home`");
+    let frame = planar.clone() + "\n[frame.hook]\nbody = \"c1.length\"\n";
+    refused(frame, "the robot has no body `c1.length`");
     // The platform point is the exit point.
     let same = planar.replace(
         "ex = 0.5\nez = 0.45\npx = -0.06\npz = 0.05",

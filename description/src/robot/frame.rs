@@ -122,7 +122,9 @@ impl Bodies<'_> {
             all.push((PLATFORM.to_owned(), FrameBody::Platform));
         }
         let mut long = Vec::new();
-        for (leg, own) in self.legs.iter().enumerate() {
+        // A cable is no body.
+        let legs = self.legs.iter().enumerate();
+        for (leg, own) in legs.filter(|(_, own)| own.cable.is_none()) {
             let joints = own.joints.iter().enumerate();
             for (joint, of) in joints.filter(|(_, joint)| joint.motor.is_none()) {
                 let body = FrameBody::Joint(BodyIndex { leg, joint });

@@ -7,6 +7,9 @@ use crate::{
     model::JointType,
 };
 
+/// Largest velocity of a joint that counts as held, relative to unit motions of the robot.
+const STILL: f64 = 1e-9;
+
 /// The partial layout of a search that determines most bodies.
 #[derive(Debug, Default)]
 pub(super) struct Furthest {
@@ -43,6 +46,9 @@ pub(super) fn report(files: &Files, network: &Network<'_>, failure: &Failure, wa
     let count = network.mobility;
     if count == 0 {
         report_rigid(files, network, &open);
+        return;
+    }
+    if report_held(files, network, &open).is_some() {
         return;
     }
     let unit = if count == 1 {
@@ -118,6 +124,26 @@ fn report_rigid(files: &Files, network: &Network<'_>, open: &[usize]) {
         Some(place) => files.report(place, message, help),
         None => files.refuse(message, help),
     }
+}
+
+/// Reports joints that the closures hold in place although others move; `None` if there are none.
+fn report_held(files: &Files, network: &Network<'_>, open: &[usize]) -> Option<()> {
+    let is_held = |&&edge: &&usize| {
+        let [a, b] = network.edges[edge].groups;
+        let mut samples = network.twists.iter();
+        samples.all(|twists| (&twists[a] - &twists[b]).amax() < STILL)
+    };
+    let joint = |&edge: &usize| match network.edges[edge].origin {
+        Origin::Joint(joint) => Some(&network.model.joints[joint]),
+        Origin::Closure(_) | Origin::Platform => None,
+    };
+    let held: Vec<_> = { open.iter() }.filter(is_held).filter_map(joint).collect();
+    let first = held.first()?;
+    let names = listed(held.iter().map(|joint| joint.name.as_str()));
+    let message = format!("the closures hold {names} in place while other joints move");
+    let help = "fix it in the file: remove the joint, and the closure if it then connects a body to itself";
+    files.report(&first.place, message, help);
+    Some(())
 }
 
 /// Reports coupled joints that are in another tree than their leaders, although all bodies are

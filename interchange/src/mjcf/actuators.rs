@@ -79,11 +79,6 @@ fn actuator(reader: &Reader<'_>, element: &Element, tendons: &mut Tendons, model
     own.actuated = true;
     own.armature += armature;
     own.damping += damping;
-    if gear != 1.0 {
-        own.drive = format!(
-            "Actuator `{name}` with gear {gear}: the joint's torque is {gear} times its force, `torque_gain` of [data]"
-        );
-    }
     model.motors.push(Motor {
         name,
         turns: vec![(at, 1.0)],

@@ -223,7 +223,7 @@ fn tendon(files: &Files, element: &Element, sites: &Sites, model: &Model) -> Ten
     let [stiffness, damping, friction, armature] =
         ["stiffness", "damping", "frictionloss", "armature"].map(|key| first(files, element, key));
     Tendon {
-        name: element.get("name").unwrap_or("").to_owned(),
+        name: element.get("name").unwrap_or("unnamed").to_owned(),
         joints,
         path: path(files, element, sites),
         stiffness,

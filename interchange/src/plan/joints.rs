@@ -324,9 +324,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             };
             joint.follows = Some(format!("{factor}{unit} * q_{leader}"));
         }
-        if !own.drive.is_empty() {
-            joint.comment.push(own.drive.clone());
-        }
+        joint.comment.extend(own.gears.iter().cloned());
         joint.parameters = Some(symbols);
     }
 

@@ -103,9 +103,6 @@ fn drive(
     // Drake: the inertia of the rotor before its gear.
     let gear = value("gear_ratio").unwrap_or(1.0);
     own.armature += gear * gear * value("rotor_inertia").unwrap_or(0.0);
-    if given.is_some() {
-        "through a gear, see its <transmission>".clone_into(&mut own.drive);
-    }
     model.motors.push(Motor {
         name: actuator
             .and_then(|own| own.get("name"))
