@@ -247,7 +247,8 @@ impl<'m> Motion<'m> {
         DVector::from_iterator(self.coordinates.len(), step)
     }
 
-    /// Projects a configuration onto the closures.
+    /// Projects a configuration onto the closures; it stays if only rounding errors leave them open,
+    /// which would move it far near a singularity.
     ///
     /// On failure: the configuration with the smallest residuals, the largest residual and its row.
     pub(crate) fn closed(&self, start: &State) -> Result<State, Open> {
@@ -256,7 +257,7 @@ impl<'m> Motion<'m> {
         for step in 0..300 {
             let (gaps, jacobian) = self.closure(&state);
             let (row, gap) = largest(&gaps);
-            if gap < 1e-15 || (gap < 1e-13 && step > since + 3) {
+            if gap < 1e-15 || (gap < 1e-13 && (step == 0 || step > since + 3)) {
                 return Ok(state);
             }
             if gap < 0.9 * best {
