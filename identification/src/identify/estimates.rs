@@ -468,7 +468,7 @@ fn nothing_moves(prepared: &PreparedSystem, system: &System) -> Problem {
         "the data determine no parameter: `standstill_velocity` skips {still} of {} equations",
         still + left
     ))
-    .help("lower `standstill_velocity` of [identification], or check the unit of the positions, `position_scale` of [data]")
+    .help("lower `standstill_velocity` of [identification], or check the units of the log: is the time in milliseconds? Units of positions are `position_scale` of [data]")
 }
 
 /// Warnings about a system or its estimate.
