@@ -7,6 +7,7 @@ use crate::experiments::excitation::Excitation;
 use crate::experiments::experiment::Experiment;
 use crate::experiments::prior::Prior;
 use crate::experiments::settings::Identification;
+use crate::experiments::stribeck;
 use crate::robot::model::{Frame, Leg, Motor, Payload, Platform, Spanned, actuators};
 use crate::robot::point_spring::PointSpring;
 use overact_exact::Number;
@@ -95,6 +96,12 @@ impl Description {
     #[must_use]
     pub fn actuators(&self) -> Vec<(usize, usize)> {
         actuators(&self.legs)
+    }
+
+    /// Whether a joint or motor has Stribeck friction.
+    #[must_use]
+    pub fn has_stribeck(&self) -> bool {
+        stribeck::is_present(&self.legs, &self.motors)
     }
 }
 

@@ -57,6 +57,7 @@ pub use experiments::held::HELD_AND_CORRECTIONS;
 pub use experiments::known::{COUPLED_MOTORS, KNOWN_TORQUES};
 pub use experiments::prior::Prior;
 pub use experiments::settings::{Friction, Identification, Instruments, Normalisation, Reversals};
+pub use experiments::stribeck::{NO_STRIBECK, STRIBECK_ALONE};
 pub use expressions::formula::{Formula, Spring};
 pub use overact_core::StandardParameter;
 pub use parameters_file::parse_parameters;

@@ -100,10 +100,10 @@ pub use gear_friction::GearFriction;
 pub use gravity::{Fields, GravityDirection, gravity_direction};
 pub use identify::{
     BaseParameter, DriveGearFriction, GearCoefficient, GearFrictionEstimate, Identification,
-    PreparedSystem, PriorStage, Progress, ProjectionEstimates, RankedProjection, Study,
-    estimate_projection,
+    PreparedSystem, PriorStage, Progress, ProjectionEstimates, RankedProjection,
+    StribeckVelocities, StribeckVelocity, Study, VelocityEstimate, estimate_projection,
     figures::{ActuatorRange, CorrelationFigures, Figures, PredictionFigures, ResidualFigures},
-    gear_friction, identify, identify_after, prepare, study,
+    gear_friction, identify, identify_after, prepare, stribeck_velocities, study,
     tracking::TrackingError,
 };
 pub use kinematics::{Motion, Motions, motion};

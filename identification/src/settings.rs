@@ -164,6 +164,9 @@ pub struct Settings {
     /// Known friction of the gears, one for each actuator; empty for none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub gear_friction: Vec<GearFriction>,
+    /// Stribeck velocities by parameter (rad/s or m/s), instead of those of the model.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub stribeck_velocities: BTreeMap<String, f64>,
     /// Checks that are run.
     #[serde(default)]
     pub checks: CheckScope,
@@ -227,6 +230,7 @@ impl Settings {
             weighted: true,
             instruments: Instruments::default(),
             gear_friction: Vec::new(),
+            stribeck_velocities: BTreeMap::new(),
             checks: CheckScope::default(),
             period_s: None,
             prior: Prior::default(),
@@ -343,6 +347,7 @@ impl Settings {
         }
         problems.extend(self.check_standstill(info));
         problems.extend(self.check_gears(info));
+        problems.extend(self.check_stribeck());
         if self.r_sigma.is_nan() || self.r_sigma <= 1.0 {
             problems.push(
                 Problem::new(
@@ -370,6 +375,15 @@ impl Settings {
         let bad = gears.iter().find(|gear| !is_possible(gear))?;
         let message = format!("a gear has the friction coefficient {}", bad.coefficient);
         let help = "it is a part of the transmitted torque, below 1";
+        Some(Problem::new(Code::SETTINGS, message).help(help))
+    }
+
+    /// The problem of invalid Stribeck velocities.
+    fn check_stribeck(&self) -> Option<Problem> {
+        let mut velocities = self.stribeck_velocities.iter();
+        let (name, velocity) = velocities.find(|(_, own)| !(own.is_normal() && **own > 0.0))?;
+        let message = format!("the Stribeck velocity of `{name}` is {velocity}");
+        let help = "it is positive, in rad/s or m/s";
         Some(Problem::new(Code::SETTINGS, message).help(help))
     }
 

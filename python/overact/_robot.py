@@ -259,7 +259,9 @@ class Robot(Functions):
         return self.costs([function], effort)[function]
 
     def costs(self, functions: Iterable[str] | None = None, effort: str = "quick") -> dict[str, Cost]:
-        """Cost of functions and of those that they call, in generated code; by default of all functions.
+        """Cost of functions and of those that they call, in generated code.
+
+        By default of all functions that are generated without a request.
 
         Groups are "control", "identification" and "kinematics".
         """

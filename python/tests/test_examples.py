@@ -11,7 +11,7 @@ EXAMPLES = pathlib.Path(__file__).resolve().parents[1] / "examples"
 def test_dualv_example_recovers_the_true_parameters(capsys):
     found = runpy.run_path(str(EXAMPLES / "dualv.py"), run_name="__main__")
     printed = capsys.readouterr().out
-    assert "<Robot DualV: r = 3, n = 4" in printed and "DualV: 2 training runs" in printed
+    assert "<Robot DualV: r = 3, n = 4" in printed and str(found["result"]) in printed
     result, robot = found["result"], found["robot"]
     # The true parameters of the robot are known.
     truth = robot.true_values

@@ -182,7 +182,7 @@ def test_the_report_is_well_formed_html(robot, result, tmp_path):
     result.save_report(tmp_path / "numbers.csv")
     result.save_report(tmp_path / "numbers.json")
     assert "figures" in json.loads((tmp_path / "numbers.json").read_text(encoding="utf-8"))
-    with pytest.raises(ValueError, match="ends with"):
+    with pytest.raises(ValueError, match="must end with"):
         result.save_report(tmp_path / "report.pdf")
 
 
@@ -212,7 +212,7 @@ def test_inputs_are_never_overwritten(split, tmp_path):
     result = overact.identify(overact.Robot(path), log)
     before = log.read_bytes()
     for name in ("robot.toml", "log.csv"):
-        with pytest.raises(ValueError, match="would be overwritten|ends with"):
+        with pytest.raises(ValueError, match="would be overwritten|must end with"):
             result.save_report(tmp_path / name)
     with pytest.raises(ValueError, match="would be overwritten"):
         result.save_parameters(path)

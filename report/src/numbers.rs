@@ -103,7 +103,8 @@ fn add_gravity<'a>(rows: &mut Rows<'a>, identification: &'a Identification) {
     }
 }
 
-/// Drive gains, parameters that were estimated together with them, and friction of gears.
+/// Drive gains, parameters that were estimated together with them, friction of gears, and Stribeck
+/// velocities.
 fn add_gains<'a>(rows: &mut Rows<'a>, identification: &'a Identification) {
     for gain in &identification.gains {
         let name = gain.actuator.as_str();
@@ -115,6 +116,14 @@ fn add_gains<'a>(rows: &mut Rows<'a>, identification: &'a Identification) {
             let name = drive.actuator.as_str();
             rows.add("gear_friction", name, "coefficient", own.value);
             rows.add("gear_friction", name, "deviation", own.deviation);
+        }
+    }
+    for joint in &identification.stribeck_velocities {
+        if let Some(own) = joint.estimate {
+            let name = joint.parameter.as_str();
+            rows.add("stribeck_velocity", name, "value", own.value);
+            rows.add("stribeck_velocity", name, "low_95", own.interval_95[0]);
+            rows.add("stribeck_velocity", name, "high_95", own.interval_95[1]);
         }
     }
     for one in &identification.gain_parameters {

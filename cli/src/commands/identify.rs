@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     runs: runs::Arguments,
     /// Factor files (`overact factor`) instead of logs
-    #[arg(long, value_name = "PARQUET", num_args = 1.., conflicts_with_all = ["tracking", "calibrate", "gains", "gravity_direction", "gear_friction", "online", "parameters", "strict", "all", "tables", "timings", "reports", "published"])]
+    #[arg(long, value_name = "PARQUET", num_args = 1.., conflicts_with_all = ["tracking", "calibrate", "gains", "gravity_direction", "gear_friction", "stribeck_velocity", "online", "parameters", "strict", "all", "tables", "timings", "reports", "published"])]
     factors: Vec<PathBuf>,
     /// Skip unusable parts of factor files, and report them
     #[arg(long, requires = "factors")]
@@ -88,6 +88,10 @@ pub(crate) struct Arguments {
     /// [default: that of the description]
     #[arg(long, conflicts_with_all = ["gains", "gravity_direction"])]
     gear_friction: bool,
+    /// First identify the Stribeck velocities of joints with the key `stribeck`
+    /// [default: that of the description]
+    #[arg(long, conflicts_with_all = ["gains", "gravity_direction", "gear_friction"])]
+    stribeck_velocity: bool,
     /// Replay the runs through the online filter: parameters with standard deviations over time,
     /// and detected changes
     #[arg(long)]
@@ -213,6 +217,11 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     };
     let identifier = if arguments.gear_friction {
         identifier.gear_friction(true)
+    } else {
+        identifier
+    };
+    let identifier = if arguments.stribeck_velocity {
+        identifier.stribeck_velocity(true)
     } else {
         identifier
     };

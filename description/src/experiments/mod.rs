@@ -13,4 +13,5 @@ pub(crate) mod payloads;
 pub(crate) mod per_actuator;
 pub(crate) mod prior;
 pub(crate) mod settings;
+pub(crate) mod stribeck;
 pub(crate) mod transmission;

@@ -3,8 +3,8 @@
 use crate::diagnostic::Code;
 use crate::experiments::data::check_count;
 use crate::experiments::experiment::position;
-use crate::experiments::gears;
 use crate::experiments::known;
+use crate::experiments::{gears, stribeck};
 use crate::expressions::dimension::Dimension;
 use crate::robot::inventory::Inventory;
 use crate::robot::model::Spanned;
@@ -111,6 +111,8 @@ pub struct Identification {
     pub gravity_direction: bool,
     /// Whether the friction of the gears is identified first.
     pub gear_friction: bool,
+    /// Whether the Stribeck velocities are identified first.
+    pub stribeck_velocity: bool,
     /// Standard parameters that are known exactly, by name, SI units.
     pub known: Vec<(String, f64)>,
 }
@@ -145,6 +147,7 @@ pub(crate) fn identification(
         gains: false,
         gravity_direction: false,
         gear_friction: false,
+        stribeck_velocity: false,
         known: Vec::new(),
     };
     if let Some(table) = item.and_then(|item| item.table("the table `[identification]`")) {
@@ -156,6 +159,10 @@ pub(crate) fn identification(
         settings.gear_friction = table
             .get("gear_friction")
             .is_some_and(|item| gears::friction(&item, is_corrected, robot));
+        let is_corrected = is_corrected || settings.gear_friction;
+        settings.stribeck_velocity = table
+            .get("stribeck_velocity")
+            .is_some_and(|item| stribeck::velocity(&item, is_corrected, robot));
         table.finish();
     }
     settings

@@ -35,7 +35,10 @@ use crate::{
     thresholds::Thresholds,
 };
 
-use super::{figures::Figures, gear_friction::DriveGearFriction, tracking::TrackingError};
+use super::{
+    figures::Figures, gear_friction::DriveGearFriction, stribeck_velocity::StribeckVelocity,
+    tracking::TrackingError,
+};
 
 /// Result of an identification.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -92,6 +95,9 @@ pub struct Identification {
     /// All torques are those that the gears transmit.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gear_friction: Vec<DriveGearFriction>,
+    /// Stribeck velocities, if they were identified from the runs.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub stribeck_velocities: Vec<StribeckVelocity>,
     /// Motor-side parameters of the drives, if motors are described.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub motors: Vec<MotorParameter>,

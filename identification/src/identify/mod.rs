@@ -15,6 +15,7 @@ mod instruments;
 mod plots;
 mod prepare;
 mod progress;
+mod stribeck_velocity;
 mod study;
 pub(crate) mod tracking;
 
@@ -26,6 +27,9 @@ pub use identification::{BaseParameter, Identification};
 pub(crate) use prepare::session_numbers;
 pub use prepare::{PreparedSystem, prepare};
 pub use progress::Progress;
+pub use stribeck_velocity::{
+    StribeckVelocities, StribeckVelocity, VelocityEstimate, stribeck_velocities,
+};
 pub use study::{RankedProjection, Study, study};
 
 use consistency::{consistent_all, contradicted_bounds};
@@ -78,6 +82,8 @@ pub enum PriorStage<'a> {
     Gravity(&'a GravityDirection),
     /// Friction of the gears; the settings contain it.
     GearFriction(&'a GearFrictionEstimate),
+    /// Stribeck velocities; the settings contain them.
+    Stribeck(&'a StribeckVelocities),
 }
 
 /// [`identify`] after a previous identification.
@@ -111,6 +117,9 @@ pub fn identify_after(
         }
         PriorStage::GearFriction(gears) => {
             prepared = gears.propagated(prepared, model, dataset.runs, settings)?;
+        }
+        PriorStage::Stribeck(found) => {
+            prepared = found.propagated(prepared, model, dataset.runs, settings)?;
         }
         PriorStage::Gravity(direction) => prepared = prepared.with_gravity(direction),
     }
@@ -246,6 +255,7 @@ pub fn identify_after(
         gains: Vec::new(),
         gain_parameters: Vec::new(),
         gear_friction: Vec::new(),
+        stribeck_velocities: Vec::new(),
         motors: Vec::new(),
         functions_base: Vec::new(),
         tracking: Vec::new(),

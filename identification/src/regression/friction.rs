@@ -33,8 +33,10 @@ const NEGLIGIBLE: f64 = 1e-7;
 pub(crate) struct Rate {
     /// Joints with their factors.
     joints: Vec<(usize, f64)>,
-    /// Stribeck velocity of the friction, if it has one.
+    /// Stribeck velocity of the model, if it has one.
     stribeck: Option<f64>,
+    /// Stribeck velocity instead of that of the model.
+    estimated: Option<f64>,
 }
 
 impl Rate {
@@ -42,6 +44,15 @@ impl Rate {
         Self {
             joints,
             stribeck: None,
+            estimated: None,
+        }
+    }
+
+    /// The same rate with another Stribeck velocity than that of the model.
+    pub(crate) fn with_stribeck(&self, velocity: f64) -> Self {
+        Self {
+            estimated: Some(velocity),
+            ..self.clone()
         }
     }
 
@@ -56,19 +67,21 @@ impl Rate {
         Self::new(joints.map(|(joint, factor)| (joint, -factor)).collect())
     }
 
-    /// Ratio of the mean friction over an interval to that at its centre, for Stribeck friction.
+    /// Ratio of the mean friction over an interval to that of the model at its centre, for Stribeck
+    /// friction.
     ///
     /// The rate changes by `step` in the interval.
     pub(crate) fn mean_factor(&self, rate: f64, step: f64) -> Option<f64> {
-        let velocity = self.stribeck?;
+        let of_model = self.stribeck?;
+        let velocity = self.estimated.unwrap_or(of_model);
+        let at_centre = |velocity: f64| rate.signum() / (1.0 + (rate / velocity).powi(2));
         if rate == 0.0 || step == 0.0 {
-            return Some(1.0);
+            return Some(at_centre(velocity) / at_centre(of_model));
         }
         // ∫ sign(u)/(1 + (u/v)²) du = v atan(|u|/v), and the difference of two such values.
         let [before, after] = [rate - step / 2.0, rate + step / 2.0].map(|u| u.abs() / velocity);
         let mean = velocity * ((after - before) / (1.0 + after * before)).atan() / step;
-        let middle = rate.signum() / (1.0 + (rate / velocity).powi(2));
-        Some(mean / middle)
+        Some(mean / at_centre(of_model))
     }
 }
 
@@ -306,4 +319,20 @@ pub(super) fn friction_rates(model: &dyn Model, seed: u64) -> Result<Vec<Option<
     }
     Error::check(problems)?;
     Ok(found)
+}
+
+/// Stribeck velocities of the model by parameter (rad/s or m/s).
+///
+/// # Errors
+/// A friction parameter whose rate cannot be recognised.
+pub(crate) fn stribeck_velocities(
+    model: &dyn Model,
+    seed: u64,
+) -> Result<Vec<(&'static str, f64)>, Error> {
+    let rates = friction_rates(model, seed)?;
+    let parameters = model.info().parameters.iter().zip(rates);
+    let velocity = |(parameter, rate): (&overact::Parameter, Option<Rate>)| {
+        Some((parameter.name, rate?.stribeck?))
+    };
+    Ok(parameters.filter_map(velocity).collect())
 }

@@ -23,7 +23,7 @@ mod collect_rows;
 pub(crate) mod columns;
 pub(crate) mod elimination;
 pub(crate) mod factor;
-mod friction;
+pub(crate) mod friction;
 mod instruments;
 pub(crate) mod observation;
 pub(crate) mod observer;

@@ -69,6 +69,7 @@ pub fn page(contents: &Contents<'_>) -> String {
         calibrations::gravity::section(contents),
         calibrations::gains::section(contents),
         calibrations::gears::section(contents),
+        calibrations::stribeck::section(contents),
         estimates::motors::section(contents),
         estimates::online::section(contents),
         estimates::consistent::section(contents),

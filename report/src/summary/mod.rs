@@ -12,7 +12,7 @@ use crate::{
     layout::{line, paragraph},
     line_errors::{base_words, is_mixed, relative, relative_words, validation_words},
     online::online,
-    terminal::{calibration, gains, gears, gravity, motors},
+    terminal::{calibration, gains, gears, gravity, motors, stribeck},
 };
 use overact_identification::{
     Estimate, Estimator, Grade, Identification, ParameterEstimate, Stage, Verdict, failed_checks,
@@ -53,6 +53,7 @@ pub fn summary(identification: &Identification, page: Option<&str>, extent: Exte
     above.push_str(&gravity::gravity(identification.gravity.as_ref()));
     above.push_str(&gains::gains(&identification.gains));
     above.push_str(&gears::gears(&identification.gear_friction));
+    above.push_str(&stribeck::stribeck(&identification.stribeck_velocities));
     let mut reported = Vec::new();
     for estimate in answers(identification) {
         above.push('\n');

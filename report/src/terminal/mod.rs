@@ -5,6 +5,7 @@ pub(crate) mod gains;
 pub(crate) mod gears;
 pub(crate) mod gravity;
 pub(crate) mod motors;
+pub(crate) mod stribeck;
 
 use crate::{
     intervals::{half_width_percent, is_outside},

@@ -95,7 +95,8 @@ impl Robot {
         let identification = &self.description().identification;
         let is_of_logs = identification.gains
             || identification.gravity_direction
-            || identification.gear_friction;
+            || identification.gear_friction
+            || identification.stribeck_velocity;
         if !self.description().prior.held.is_empty() {
             let message = "the description holds parameters, which factors do not support";
             let help = "identify from the logs, or leave out `held` of [prior]";

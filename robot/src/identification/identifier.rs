@@ -1,7 +1,7 @@
 //! Identification of a robot from runs with the settings of its description.
 
 use crate::{
-    error::{Error, Problem},
+    error::Error,
     identification::{
         functions_base::functions_base, motors::at_motors, partitions::partitions, runs::Runs,
         standstill::without_standstills,
@@ -9,15 +9,9 @@ use crate::{
     robot::Robot,
 };
 use overact::Model;
-use overact_codegen::description::{
-    COUPLED_MOTORS, GAINS_AND_GRAVITY, GEARS_ALONE, GEARS_OF_COUPLED_MOTORS, HELD_AND_CORRECTIONS,
-    KNOWN_TORQUES, Leg,
-};
-use overact_codegen::diagnostic::Code;
 use overact_identification::{
-    Calibration, CalibrationScope, Dataset, Estimate, Gains, GravityDirection, Identification,
-    Instruments, Log, PriorStage, Progress, Settings, Stage, Study, drive_gains, gear_friction,
-    identify_after, study,
+    Calibration, CalibrationScope, Dataset, Estimate, Identification, Instruments, Log, PriorStage,
+    Progress, Settings, Stage, Study, identify_after, study,
 };
 use std::collections::BTreeMap;
 
@@ -39,16 +33,17 @@ use std::collections::BTreeMap;
 /// ```
 #[derive(Clone)]
 pub struct Identifier<'a> {
-    robot: &'a Robot,
-    runs: &'a [Log],
-    validation: &'a [Log],
-    true_values: Option<&'a BTreeMap<String, f64>>,
-    settings: Option<Settings>,
-    calibration: Option<CalibrationScope>,
-    gains: bool,
-    gravity_direction: bool,
-    gear_friction: bool,
-    progress: &'a dyn Fn(Progress<'_>),
+    pub(super) robot: &'a Robot,
+    pub(super) runs: &'a [Log],
+    pub(super) validation: &'a [Log],
+    pub(super) true_values: Option<&'a BTreeMap<String, f64>>,
+    pub(super) settings: Option<Settings>,
+    pub(super) calibration: Option<CalibrationScope>,
+    pub(super) gains: bool,
+    pub(super) gravity_direction: bool,
+    pub(super) gear_friction: bool,
+    pub(super) stribeck_velocity: bool,
+    pub(super) progress: &'a dyn Fn(Progress<'_>),
 }
 
 impl std::fmt::Debug for Identifier<'_> {
@@ -77,6 +72,7 @@ impl<'a> Identifier<'a> {
             gains: robot.description().identification.gains,
             gravity_direction: robot.description().identification.gravity_direction,
             gear_friction: robot.description().identification.gear_friction,
+            stribeck_velocity: robot.description().identification.stribeck_velocity,
             progress: &|_| {},
         }
     }
@@ -146,6 +142,17 @@ impl<'a> Identifier<'a> {
     pub fn gear_friction(self, gear_friction: bool) -> Self {
         Self {
             gear_friction,
+            ..self
+        }
+    }
+
+    /// Sets whether the Stribeck velocities are identified first, from the training runs.
+    ///
+    /// This overrides the description.
+    #[must_use]
+    pub fn stribeck_velocity(self, stribeck_velocity: bool) -> Self {
+        Self {
+            stribeck_velocity,
             ..self
         }
     }
@@ -220,6 +227,7 @@ impl<'a> Identifier<'a> {
     /// requested.
     fn identified(&self) -> Result<Identification, Error> {
         self.check_gears()?;
+        self.check_stribeck()?;
         self.check_held()?;
         if self.gravity_direction {
             let made = self.in_gravity(|own, found| own.estimated(PriorStage::Gravity(found)))?;
@@ -230,6 +238,9 @@ impl<'a> Identifier<'a> {
         }
         if self.gear_friction {
             return self.with_gear_friction();
+        }
+        if self.stribeck_velocity {
+            return self.with_stribeck_velocities();
         }
         if !self.gains {
             return self.estimated(PriorStage::Nothing);
@@ -243,131 +254,8 @@ impl<'a> Identifier<'a> {
         Ok(result)
     }
 
-    /// Rejects the friction of gears next to other corrections of the torques.
-    fn check_gears(&self) -> Result<(), Error> {
-        let mut legs = self.robot.description().legs.iter();
-        let why = if self.gains || self.gravity_direction {
-            GEARS_ALONE
-        } else if legs.any(Leg::has_coupled_motors) {
-            GEARS_OF_COUPLED_MOTORS
-        } else {
-            return Ok(());
-        };
-        if !self.gear_friction {
-            return Ok(());
-        }
-        let problem = Problem::new(Code::CONTRADICTION, why).file(self.robot.file());
-        Err(problem.help("identify without `gear_friction`").into())
-    }
-
-    /// Rejects held parameters next to corrections of the torques.
-    fn check_held(&self) -> Result<(), Error> {
-        let is_corrected = self.gains || self.gravity_direction || self.gear_friction;
-        if !is_corrected || self.robot.description().prior.held.is_empty() {
-            return Ok(());
-        }
-        let problem = Problem::new(Code::CONTRADICTION, HELD_AND_CORRECTIONS);
-        let help = "leave out `held` of [prior], or identify without the correction";
-        Err(problem.file(self.robot.file()).help(help).into())
-    }
-
-    /// Identification from the torques that the gears transmit.
-    fn with_gear_friction(&self) -> Result<Identification, Error> {
-        let settings = self.with_checks();
-        let dataset = self.dataset();
-        let model = self.robot.model();
-        let found = gear_friction(model, &dataset, &settings, self.progress)?;
-        let own = Identifier {
-            settings: Some(Settings {
-                gear_friction: found.gears(),
-                ..settings
-            }),
-            ..self.clone()
-        };
-        let mut result = own.estimated(PriorStage::GearFriction(&found))?;
-        result.warnings.splice(0..0, found.warnings());
-        result.gear_friction = found.drives;
-        Ok(result)
-    }
-
-    /// Identifies the gains of the drives.
-    fn drive_gains(&self) -> Result<Gains, Error> {
-        let mut legs = self.robot.description().legs.iter();
-        if legs.any(Leg::has_coupled_motors) {
-            let problem = Problem::new(Code::CONTRADICTION, COUPLED_MOTORS).file(self.robot.file());
-            let help =
-                "identify without gains; a gain of a motor scales its `torque_gain` in [data]";
-            return Err(problem.help(help).into());
-        }
-        let mut legs = self.robot.description().legs.iter();
-        let mut springs = self.robot.description().springs.iter();
-        if legs.any(Leg::has_known_torques) || springs.any(|spring| spring.known.is_some()) {
-            let problem = Problem::new(Code::CONTRADICTION, KNOWN_TORQUES).file(self.robot.file());
-            let help = "identify without gains, or leave out the key `known` of joints and springs";
-            return Err(problem.help(help).into());
-        }
-        let tell = |run: &str, done, samples| (self.progress)(Progress::Run { run, done, samples });
-        let settings = self.with_defaults();
-        let (model, runs) = (self.robot.model(), self.runs);
-        Ok(drive_gains(model, runs, &settings, &tell)?)
-    }
-
-    /// Calls `make` for runs whose torques are scaled by the identified gains.
-    fn with_gains<T>(
-        &self,
-        make: impl FnOnce(&Identifier<'_>, &Gains) -> Result<T, Error>,
-    ) -> Result<(T, Gains), Error> {
-        let gains = self.drive_gains()?;
-        let factors = gains.factors();
-        let scaled = |logs: &[Log]| -> Vec<Log> {
-            let logs = logs.iter().cloned();
-            logs.map(|log| log.with_torque_factors(&factors)).collect()
-        };
-        let (runs, validation) = (scaled(self.runs), scaled(self.validation));
-        let own = Identifier {
-            runs: &runs,
-            validation: &validation,
-            ..self.clone()
-        };
-        Ok((make(&own, &gains)?, gains))
-    }
-
-    /// Calls `make` for the robot with the identified gravity direction.
-    fn in_gravity<T>(
-        &self,
-        make: impl FnOnce(&Identifier<'_>, &GravityDirection) -> Result<T, Error>,
-    ) -> Result<(T, GravityDirection), Error> {
-        if self.gains {
-            let help = "identify the gains first, put them into `torque_gain` of [data], then identify the direction";
-            let problem =
-                Problem::new(Code::CONTRADICTION, GAINS_AND_GRAVITY).file(self.robot.file());
-            return Err(problem.help(help).into());
-        }
-        let tell = |run: &str, done, samples| (self.progress)(Progress::Run { run, done, samples });
-        let settings = self.with_defaults();
-        let found = self.robot.gravity_direction(self.runs, &settings, &tell)?;
-        let turned = if found.significant {
-            Some(self.robot.in_gravity(found.used())?)
-        } else {
-            None
-        };
-        let robot = turned.as_ref().unwrap_or(self.robot);
-        // The prior must refer to the parameters that have an effect in this gravity.
-        let frequency = self.runs.first().map_or(0.0, Log::sampling_frequency);
-        let settings = Settings {
-            prior: robot.settings(frequency).prior,
-            ..settings
-        };
-        let own = Identifier {
-            robot,
-            settings: Some(settings),
-            ..self.clone()
-        };
-        Ok((make(&own, &found)?, found))
-    }
-
     /// Identification in the current state, after the preceding stages.
-    fn estimated(&self, before: PriorStage<'_>) -> Result<Identification, Error> {
+    pub(super) fn estimated(&self, before: PriorStage<'_>) -> Result<Identification, Error> {
         self.robot.check_prior()?;
         let settings = self.with_checks();
         let essential = self.essential();
@@ -433,7 +321,7 @@ impl<'a> Identifier<'a> {
         Ok(study(model, &dataset, &choices, &settings, self.progress)?)
     }
 
-    fn dataset(&self) -> Dataset<'a> {
+    pub(super) fn dataset(&self) -> Dataset<'a> {
         Dataset {
             runs: self.runs,
             validation: self.validation,
@@ -444,14 +332,14 @@ impl<'a> Identifier<'a> {
     }
 
     /// Settings, by default those of the description.
-    fn with_defaults(&self) -> Settings {
+    pub(super) fn with_defaults(&self) -> Settings {
         let frequency = self.runs.first().map_or(0.0, Log::sampling_frequency);
         let own = || self.robot.settings(frequency);
         self.settings.clone().unwrap_or_else(own)
     }
 
     /// Settings without what basic checks leave out.
-    fn with_checks(&self) -> Settings {
+    pub(super) fn with_checks(&self) -> Settings {
         let settings = self.with_defaults();
         if settings.checks.has_fault_hypotheses() {
             return settings;

@@ -1,5 +1,6 @@
 //! Identification of a robot from runs or factors, and uses of its result.
 
+pub(crate) mod corrections;
 pub(crate) mod factors;
 pub(crate) mod functions_base;
 pub(crate) mod identifier;

@@ -72,6 +72,7 @@ pub(crate) fn settings() -> Settings {
         filter_cutoff_hz: 10.0,
         decimation: 1,
         gear_friction: Vec::new(),
+        stribeck_velocities: std::collections::BTreeMap::new(),
         skip_start: 0,
         skip_end: 0,
         difference_order: 4,

@@ -183,6 +183,11 @@ impl Column {
         }
     }
 
+    /// Sets the Stribeck velocity, if it has a rate.
+    pub(super) fn set_stribeck(&mut self, velocity: f64) {
+        self.rate = self.rate.as_ref().map(|rate| rate.with_stribeck(velocity));
+    }
+
     /// Factor of the model's column at a velocity of its coordinate.
     ///
     /// The velocity changes by `step` in a sampling interval.

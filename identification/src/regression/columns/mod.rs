@@ -121,7 +121,7 @@ impl ColumnSet {
     /// Applies the settings for reversals to the columns of Coulomb friction.
     ///
     /// They are zero below the dead band of the joint's speed, and can use the mean sign over a
-    /// sampling interval.
+    /// sampling interval. Stribeck friction has the velocities of the settings.
     ///
     /// # Errors
     /// A friction parameter whose rate cannot be recognised.
@@ -131,7 +131,8 @@ impl ColumnSet {
         settings: &Settings,
     ) -> Result<Self, Error> {
         let reversal = Reversal::new(settings);
-        if reversal.band > 0.0 || reversal.averaged {
+        let velocities = &settings.stribeck_velocities;
+        if reversal.band > 0.0 || reversal.averaged || !velocities.is_empty() {
             let rates = friction_rates(model, settings.seed)?;
             let parameters = model.info().parameters;
             let of = |symbol: P, body: Body| {
@@ -158,9 +159,20 @@ impl ColumnSet {
                 column.direction = direction;
                 column.rate.clone_from(&rates[index]);
                 column.reversal = Some(reversal);
+                if let Some(&velocity) = velocities.get(&column.name) {
+                    column.set_stribeck(velocity);
+                }
             }
         }
         Ok(self)
+    }
+
+    /// Adds a column of Stribeck friction with another velocity, and returns its index.
+    pub(crate) fn add_stribeck(&mut self, column: usize, velocity: f64) -> usize {
+        let mut own = self.columns[column].clone();
+        own.set_stribeck(velocity);
+        self.columns.push(own);
+        self.columns.len() - 1
     }
 
     /// All columns.

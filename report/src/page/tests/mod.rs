@@ -382,6 +382,7 @@ fn an_empty_identification_still_has_a_page() {
         gains: Vec::new(),
         gain_parameters: Vec::new(),
         gear_friction: Vec::new(),
+        stribeck_velocities: Vec::new(),
         motors: Vec::new(),
         functions_base: Vec::new(),
         tracking: Vec::new(),
