@@ -20,6 +20,9 @@ const MOST_ELEMENTS: usize = 500_000;
 /// Largest number of errors kept for a file; further ones are counted.
 const MOST_ERRORS: usize = 200;
 
+/// Largest number of misspelt names that are added to the errors.
+const MOST_MISSPELT: usize = 5;
+
 /// Largest number of unknown names that are compared with all others for a suggestion.
 const MOST_SUGGESTIONS: usize = 50;
 
@@ -61,6 +64,8 @@ pub(crate) struct Files {
     /// Number of names that may still be compared with all others.
     suggestions_left: Cell<usize>,
     ledger: RefCell<Ledger>,
+    /// Unknown names that are similar to known ones, which are errors if the import fails.
+    misspelt: RefCell<Vec<(usize, Diagnostic)>>,
 }
 
 impl Default for Files {
@@ -71,6 +76,7 @@ impl Default for Files {
             elements_left: Cell::new(MOST_ELEMENTS),
             suggestions_left: Cell::new(MOST_SUGGESTIONS),
             ledger: RefCell::default(),
+            misspelt: RefCell::default(),
         }
     }
 }
@@ -243,6 +249,16 @@ impl Files {
         }
     }
 
+    /// Keeps an unknown name that is similar to a known one, in case the import fails.
+    pub(crate) fn suspect(&self, place: &Place, name: &str, near: String) {
+        let message = format!("`{name}` is unknown and was not read");
+        let error = Diagnostic::new(Code::FOREIGN, message, place.span.clone()).help(near);
+        let mut misspelt = self.misspelt.borrow_mut();
+        if misspelt.len() < MOST_MISSPELT {
+            misspelt.push((place.file, error));
+        }
+    }
+
     /// Suggests the candidate closest to an unknown name, for the first unknown names only.
     pub(crate) fn did_you_mean<'a>(
         &self,
@@ -330,6 +346,9 @@ impl Files {
 
     /// All errors, for files with errors only.
     pub(crate) fn into_errors(self) -> Errors {
+        for (file, error) in self.misspelt.take() {
+            self.push(file, error);
+        }
         let wrong = |file: InputFile| {
             let source = file.shown();
             let InputFile {

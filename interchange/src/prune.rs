@@ -156,8 +156,11 @@ fn is_kept(
         None => {
             let name = subject.attribute.unwrap_or(subject.element);
             let near = files.did_you_mean(name, known);
-            let reason = near.map(|near| format!("{UNKNOWN}; {near}"));
+            let reason = near.as_ref().map(|near| format!("{UNKNOWN}; {near}"));
             record(Use::Reported, reason.as_deref().unwrap_or(UNKNOWN));
+            if let Some(near) = near {
+                files.suspect(subject.place, name, near);
+            }
         }
     }
     false

@@ -157,3 +157,25 @@ fn impossible_home_positions_are_rejected() {
     let beyond = "the home position 1e300 of `a` is beyond 1e6";
     refused(&[("a", 1e300)], beyond);
 }
+
+#[test]
+fn misspelt_elements_are_named_if_the_import_fails() {
+    let text = format!(
+        r#"<mujoco model="open"><worldbody>
+<body name="a">{MASS}<joint name="a" axis="0 1 0"/>
+ <body name="b" pos=".4 0 0">{MASS}<joint name="b" axis="0 1 0"/></body></body>
+<body name="c" pos="0 0 .1">{MASS}<joint name="c" axis="0 1 0"/>
+ <body name="d" pos=".4 0 0">{MASS}<joint name="d" axis="0 1 0"/></body></body>
+</worldbody><equality><conect body1="b" body2="d" anchor=".1 0 0"/>
+<connect body1="b" body2="a" anchor="0 0 0"/></equality>
+<actuator><motor joint="a"/></actuator></mujoco>"#
+    );
+    refused(
+        &text,
+        &[
+            "`conect` is unknown and was not read",
+            "robot.xml:6:",
+            "did you mean `connect`?",
+        ],
+    );
+}

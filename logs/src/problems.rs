@@ -178,7 +178,14 @@ pub(crate) struct Existing<'a> {
 }
 
 /// The problem of missing columns, with all existing ones, for one file or several joined ones.
-pub(crate) fn missing_columns(file: &str, missing: &[&str], existing: &Existing<'_>) -> Problem {
+///
+/// Names in `used` are not suggested.
+pub(crate) fn missing_columns(
+    file: &str,
+    missing: &[&str],
+    existing: &Existing<'_>,
+    used: &[&str],
+) -> Problem {
     let Existing {
         names,
         columns,
@@ -199,7 +206,7 @@ pub(crate) fn missing_columns(file: &str, missing: &[&str], existing: &Existing<
         problem.help(format!(
             "columns have the numbers `$1` to `${columns}`; if others are in another file of this run, join both files, `a.csv+b.csv`"
         ))
-    } else if let Some(guesses) = guesses(missing, names) {
+    } else if let Some(guesses) = guesses(missing, names, used) {
         problem.help(guesses)
     } else if names.is_empty() && *columns > 0 {
         problem.help(
@@ -225,16 +232,19 @@ pub(crate) fn no_columns(file: &str, missing: &[&str], what: &str, existing: &st
     }
 }
 
-/// Suggests existing names for missing ones.
-pub(crate) fn guesses(missing: &[&str], names: &[&str]) -> Option<String> {
+/// Suggests existing names for missing ones, each for one of them, and none in `used`.
+pub(crate) fn guesses(missing: &[&str], names: &[&str], used: &[&str]) -> Option<String> {
+    let mut free: Vec<&str> = names.to_vec();
+    free.retain(|name| !used.contains(name));
     let near = missing.iter().filter_map(|name| {
         // A name with its unit, as `q [deg]`, is meant rather than a similar one.
         let is_with_unit = |own: &&str| {
             let rest = own.strip_prefix(name);
             rest.is_some_and(|rest| rest.trim_start().starts_with(['[', '(', '/']))
         };
-        let with_unit = names.iter().copied().find(is_with_unit);
-        let near = with_unit.or_else(|| suggestion(name, names.iter().copied()))?;
+        let with_unit = free.iter().copied().find(is_with_unit);
+        let near = with_unit.or_else(|| suggestion(name, free.iter().copied()))?;
+        free.retain(|own| *own != near);
         Some(format!("`{}` for `{}`", shown(near), shown(name)))
     });
     let near: Vec<String> = near.collect();

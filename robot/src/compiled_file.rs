@@ -90,7 +90,7 @@ fn redundancy(description: &Description, mechanism: &Mechanism) -> Option<String
         return None;
     }
     Some(format!(
-        "{n} actuators ({}) drive {}. If this is intended, write redundancy = {} in [platform]; otherwise remove `actuated = true` from a joint",
+        "{n} actuators ({}) drive {}. If this is intended, write redundancy = {} in [platform]; otherwise remove `actuated = true` from a joint, or a motor",
         mechanism.actuator_names().join(", "),
         match r {
             1 => "1 degree of freedom".to_owned(),

@@ -87,7 +87,7 @@ impl<'a> Payloads<'a> {
                     let help = help.unwrap_or_else(|| {
                         if self.names.is_empty() {
                             String::from(
-                                "name the payloads of the robot in its description, payloads = [\"A\", \"B\"]",
+                                "leave out the name, or name the payloads in the description, payloads = [\"A\", \"B\"]",
                             )
                         } else {
                             format!("its payloads are {list}")

@@ -3,7 +3,7 @@
 super::codes! {
     SYNTAX 101 "invalid TOML"
         cause "A quote, bracket or equals sign is missing, a table has a key twice, or a table is opened twice."
-        cure "Correct the marked place. Strings need double quotes and lists square brackets. Each table header may occur once; [[double]] brackets make a list of tables."
+        cure "Correct the marked place. Strings need quotes and lists square brackets. Each table header may occur once; [[double]] brackets make a list of tables."
     UNKNOWN_KEY 102 "an unknown key"
         cause "The table has no key of this name. Unknown keys are errors, because a misspelled key would otherwise leave its default in effect."
         cure "Use the suggested key, move the key to its table, or delete it. robots/README.md lists the keys of every table."
@@ -15,7 +15,7 @@ super::codes! {
         cure "Write the value as the message says, for instance \"0.3 m\" for a length, 4 for a count, true for a switch."
     UNIT 105 "a value of another physical quantity"
         cause "The unit of the expression does not match the key, for instance an angle for a length."
-        cure "Use the unit that the message names. A plain number has no unit: write \"0.3 m\", not 0.3, for a length."
+        cure "Use the unit that the message names. A plain number fits every key and counts in SI units, so \"0.3 m\" is safer than 0.3."
     FORMULA 106 "an invalid expression"
         cause "The expression has an unknown character, name or function, or an open bracket. Or it adds different units, divides by zero, or exceeds the range of numbers."
         cure "Correct the expression at the marked place. Expressions have numbers, units, pi, + - * / ^, brackets, sqrt, sin, cos, tan, atan2 and the names of [constants]."

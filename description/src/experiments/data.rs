@@ -2,10 +2,9 @@
 
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::experiments::experiment::position;
-use crate::experiments::transmission;
+use crate::experiments::{signals, transmission};
 use crate::expressions::dimension::Dimension;
 use crate::robot::inventory::Inventory;
-use crate::robot::model::JointKind;
 use crate::robot::model::actuators;
 use crate::robot::warnings;
 use crate::toml_text::reader::{Item, Table};
@@ -90,7 +89,6 @@ pub(crate) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
     let position_scale = position_scale.and_then(|scales| numbers(&table, &scales));
     let position_offset = offsets(&table, robot);
     let coordinates = table.get("coordinates");
-    let of_joints = gains_of_joints(&table, robot);
     let is_of_motors = coordinates.as_ref().and_then(|item| {
         let choice = item.choice(&[("joints", false), ("motors", true)])?;
         Some(choice.value)
@@ -104,11 +102,7 @@ pub(crate) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
         _ => Some(Vec::new()),
     };
     check_drums(&table, robot, torque_gain.as_deref().unwrap_or_default());
-    if is_of_motors != Some(true) {
-        of_joints
-            .into_iter()
-            .for_each(|error| table.context.report_once(error));
-    }
+    signals::check(&table, robot, is_of_motors == Some(true));
     table.finish();
     Some(Data {
         time: time?,
@@ -208,50 +202,6 @@ pub(crate) fn check_count(item: &Item<'_, '_>, found: usize, expected: usize) ->
     );
     item.context.report(item.error(Code::WRONG_COUNT, message));
     None
-}
-
-/// Errors of gains with the unit of the other kind of joint: newtons for a revolute, newton metres
-/// for a prismatic joint.
-fn gains_of_joints(table: &Table<'_, '_>, robot: &Inventory<'_>) -> Vec<Diagnostic> {
-    let Some(item) = table.get("torque_gain") else {
-        return Vec::new();
-    };
-    let kinds = robot.actuator_kinds();
-    let list = if item.value.is_array() {
-        item.list().unwrap_or_default()
-    } else {
-        vec![item.clone(); kinds.len()]
-    };
-    let other = |(item, kind): (&Item<'_, '_>, &JointKind)| {
-        let (own, other) = match kind {
-            JointKind::Prismatic => (Dimension::FORCE, Dimension::TORQUE),
-            _ => (Dimension::TORQUE, Dimension::FORCE),
-        };
-        // Names of variables have no dimension.
-        let text = item.value.as_str().unwrap_or_default().trim();
-        if crate::toml_text::scope::is_word(text) {
-            return None;
-        }
-        let value = item.evaluate(robot.scope)?;
-        let signals = [Dimension::NONE, Dimension::VOLTAGE, Dimension::CURRENT];
-        let mut wrong = signals
-            .iter()
-            .filter_map(|signal| other.times(signal.power(-1)?));
-        wrong.any(|wrong| wrong == value.dimension).then(|| {
-            let joint = match kind {
-                JointKind::Prismatic => "prismatic",
-                _ => "revolute",
-            };
-            let message = format!(
-                "`torque_gain`: the column of a {joint} joint becomes {}, this makes {} of it",
-                own.describe(),
-                other.describe()
-            );
-            let help = "give the factor from the column to N m (revolute) or N (prismatic), such as \"35 Nm/V\"";
-            item.error(Code::UNIT, message).help(help)
-        })
-    };
-    list.iter().zip(&kinds).filter_map(other).collect()
 }
 
 /// Reports gains that are variables of the log for cables with a drum, whose radius divides a number.

@@ -13,5 +13,6 @@ pub(crate) mod payloads;
 pub(crate) mod per_actuator;
 pub(crate) mod prior;
 pub(crate) mod settings;
+pub(crate) mod signals;
 pub(crate) mod stribeck;
 pub(crate) mod transmission;

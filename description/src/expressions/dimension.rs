@@ -24,6 +24,7 @@ impl Dimension {
     pub(crate) const ANGULAR_ACCELERATION: Self = Self([0, 0, -2, 0, 1]);
     pub(crate) const FORCE: Self = Self([1, 1, -2, 0, 0]);
     pub(crate) const TORQUE: Self = Self([2, 1, -2, 0, 0]);
+    pub(crate) const PRESSURE: Self = Self([-1, 1, -2, 0, 0]);
     pub(crate) const POWER: Self = Self([2, 1, -3, 0, 0]);
     pub(crate) const VOLTAGE: Self = Self([2, 1, -3, -1, 0]);
     pub(crate) const INERTIA: Self = Self([2, 1, 0, 0, 0]);

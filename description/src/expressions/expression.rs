@@ -160,8 +160,13 @@ fn fault_at(message: impl Into<String>, span: Span) -> Failure {
 }
 
 fn unit_hint(token: &Token<'_>) -> Option<String> {
-    let name = token.kind == TokenKind::Name;
-    name.then(|| did_you_mean(token.text, UNITS)).flatten()
+    let is_name = token.kind == TokenKind::Name;
+    if is_name && UNITS.contains(&token.text) {
+        let unit = token.text;
+        return Some(format!("a unit stands after a number: write `* 1 {unit}`"));
+    }
+    let all = || format!("units are {}", UNITS.join(", "));
+    is_name.then(|| did_you_mean(token.text, UNITS).unwrap_or_else(all))
 }
 
 struct Reader<'r, 't, Q> {

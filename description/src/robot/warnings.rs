@@ -13,7 +13,11 @@ const LONGEST: f64 = 50.0;
 /// Warns of a bare angle above a full turn.
 pub(crate) fn angle(item: &Item<'_, '_>, angle: Angle) {
     let (_, radians) = angle.parts();
-    let bare = radians.value();
+    bare_angle(item, radians.value());
+}
+
+/// Warns of a home angle without a unit above a full turn, rad.
+pub(crate) fn bare_angle(item: &Item<'_, '_>, bare: f64) {
     if bare.abs() > std::f64::consts::TAU && !item.context.text(&item.span).contains("rad") {
         let what = format!(
             "`{}`: a number without a unit is in rad, and {bare} rad are more than a turn: {bare} deg?",

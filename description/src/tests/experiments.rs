@@ -130,6 +130,39 @@ fn torque_gains_need_the_unit_of_the_joint_type() {
         let expected = "`torque_gain`: the column of a revolute joint becomes a torque (N m), this makes a force (N) of it";
         assert!(found[0].contains(expected), "{found:?}");
     }
+    let speed = found("\"3 rpm\"");
+    assert_eq!(speed.len(), 1, "{speed:?}");
+    assert!(
+        speed[0].contains("this makes an angular speed (rad/s) of it"),
+        "{speed:?}"
+    );
+}
+
+#[test]
+fn position_scales_need_the_unit_of_the_joint_type() {
+    let columns = "[data]\ntime = \"t\"\npositions = [\"q\"]\ntorques = [\"i\"]\n";
+    let found = |scale: &str| errors(&format!("{columns}position_scale = {scale}"));
+    for good in [
+        "\"1 deg\"",
+        "[0.5]",
+        "\"2*pi / 4096 * 1 rad\"",
+        "\"0.3 rad/V\"",
+    ] {
+        assert_eq!(found(good), Vec::<String>::new(), "{good}");
+    }
+    for (bad, made) in [
+        ("\"1 mm\"", "a length (m)"),
+        ("[\"1 kg\"]", "a mass (kg)"),
+        ("\"1 rad/s\"", "an angular speed (rad/s)"),
+    ] {
+        let found = found(bad);
+        assert_eq!(found.len(), 1, "{bad}: {found:?}");
+        let expected = format!(
+            "`position_scale`: the column of a revolute joint becomes an angle (rad), this makes {made} of it"
+        );
+        assert!(found[0].contains(&expected), "{found:?}");
+    }
+    assert_eq!(found("\"1 foot\"").len(), 1);
 }
 
 #[test]

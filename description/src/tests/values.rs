@@ -210,6 +210,24 @@ fn numbers_that_suggest_another_unit_are_warned_about() {
 }
 
 #[test]
+fn bare_home_angles_above_a_turn_are_warned_about() {
+    let warnings = |home: &str| {
+        let warnings = good(&format!("{}home = {{ 1 = {home} }}\n", single("", "")))
+            .warnings
+            .into_iter();
+        warnings.map(|warning| warning.value).collect::<Vec<_>>()
+    };
+    for fine in ["1.5", "\"127 deg\"", "\"7 rad\""] {
+        assert_eq!(warnings(fine), Vec::<String>::new(), "{fine}");
+    }
+    for bare in ["127", "\"127\""] {
+        let found = warnings(bare);
+        assert_eq!(found.len(), 1, "{bare}: {found:?}");
+        assert!(found[0].contains("127 deg?"), "{found:?}");
+    }
+}
+
+#[test]
 fn a_capitalised_payload_name_is_warned_about() {
     let with = |name: &str| {
         let joint = format!("\n[[leg.arm.joint]]\ntype = \"fixed\"\nname = \"{name}\"");

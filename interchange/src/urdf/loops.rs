@@ -34,7 +34,7 @@ pub(super) fn read(files: &Files, root: &Element, tree: &Tree, model: &mut Model
                 };
                 Some((body, origin(files, own)))
             };
-            let (Some(a), Some(b)) = (frame(0), frame(1)) else {
+            if ends.iter().any(|end| element.child(end).is_none()) {
                 let [first, second] = ends;
                 let message = format!(
                     "`{}` does not name the links that it connects",
@@ -42,6 +42,9 @@ pub(super) fn read(files: &Files, root: &Element, tree: &Tree, model: &mut Model
                 );
                 let help = format!("write <{first} link=\"…\"/> and <{second} link=\"…\"/>");
                 files.report(&element.place, message, help);
+                continue;
+            }
+            let (Some(a), Some(b)) = (frame(0), frame(1)) else {
                 continue;
             };
             let Some(kind) = kind(files, element, [a.0, b.0], [a.1, b.1]) else {

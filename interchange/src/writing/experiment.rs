@@ -9,6 +9,8 @@ use std::fmt::Write as _;
 
 /// Number of harmonics of a run.
 const HARMONICS: f64 = 5.0;
+/// Ratio of filter cutoff to the highest harmonic, above the limit that the identification checks.
+const CUTOFF: f64 = 14.0;
 /// Sampling frequency, Hz.
 const SAMPLING: f64 = 1000.0;
 
@@ -23,7 +25,7 @@ pub(super) fn toml(text: &mut String, designed: &Result<Experiment, String>) {
         }
     };
     let highest = HARMONICS * FASTER * experiment.fundamental;
-    let cutoff = (10.0 * highest).ceil();
+    let cutoff = (CUTOFF * highest).ceil();
     let _ = writeln!(
         text,
         "\n[identification]\nfilter_cutoff = \"{cutoff} Hz\"\ndecimation = {}",

@@ -315,7 +315,7 @@ impl<'a> Columns<'a> {
                     all.columns += own.columns;
                     all
                 });
-                missing_columns(self.run, &missing, &existing)
+                missing_columns(self.run, &missing, &existing, &self.used())
             }
             _ => self.missing_in_several(&missing),
         };
@@ -337,6 +337,12 @@ impl<'a> Columns<'a> {
             Some(help) => problem.help(help),
             None => problem,
         }
+    }
+
+    /// Names of the columns that were found.
+    fn used(&self) -> Vec<&str> {
+        let names = self.found.iter();
+        names.map(|(_, name)| name.as_str()).collect()
     }
 
     /// The problem of columns missing in several files; lists the existing ones with their file.
@@ -362,7 +368,7 @@ impl<'a> Columns<'a> {
             problem.help(format!(
                 "columns have the numbers `$1` to `${columns}`; if others are in another file of this run, join both files, `a.csv+b.csv`"
             ))
-        } else if let Some(guesses) = guesses(missing, &all) {
+        } else if let Some(guesses) = guesses(missing, &all, &self.used()) {
             problem.help(guesses)
         } else {
             problem.help("name the columns in the table [data]")

@@ -245,7 +245,7 @@ fn missing_gain(run: &str, tables: &[Table], name: &str) -> Problem {
     match with_variables.map(|table| table.existing()) {
         Some(mut existing) => {
             existing.what = "scalar variable";
-            missing_columns(run, &[name], &existing)
+            missing_columns(run, &[name], &existing, &[])
         }
         None => Problem::new(
             Code::DATA_TABLE,

@@ -32,7 +32,7 @@ impl Robot {
     /// A description without an experiment, or without a run.
     pub fn experiment(&self) -> Result<VirtualExperiment<'_>, Error> {
         let missing = |message: &str| {
-            let help = "describe it in the tables [experiment] and [[experiment.run]], or give measured logs with --data";
+            let help = "describe it in the tables [experiment] and [[experiment.run]], or let `overact excite` find runs; to identify, give measured logs with --data";
             Problem::new(Code::NO_EXPERIMENT, message)
                 .file(self.file())
                 .help(help)

@@ -355,6 +355,15 @@ fn substitute(given: &[Combination], variable: &Combination) -> Option<Combinati
 /// The rough position of a joint at home.
 fn home(homes: Option<&Table<'_, '_>>, joint: &str, dimension: Dimension, scope: &Scope) -> Number {
     let item = homes.and_then(|table| table.get(joint));
-    let value = item.and_then(|item| item.number(dimension, scope));
+    let value = item.as_ref().and_then(|item| item.number(dimension, scope));
+    if let (Some(item), Some(number)) = (&item, &value)
+        && dimension == Dimension::ANGLE
+        && {
+            let text = item.context.text(&item.span);
+            text.trim_matches(['"', '\'']).parse::<f64>().is_ok()
+        }
+    {
+        warnings::bare_angle(item, number.value.value());
+    }
     value.map_or(Number::ZERO, |number| number.value)
 }

@@ -84,10 +84,10 @@ fn verdict(comparison: &ErrorsInRegressor, agreement: &Agreement) -> String {
     let exceeds = if agreement.together {
         "chance alone gives such a difference"
     } else {
-        "chance alone gives one parameter such a difference"
+        "chance alone gives one of the parameters such a difference"
     };
     format!(
-        "{outcome}: {exceeds} with a probability of {}; the limit is {}. The instruments are {source}.",
+        "{outcome}: {exceeds} with a probability of {} (limit {}). The instruments are {source}.",
         significant(agreement.probability, 2),
         significant(agreement.level, 2)
     )
