@@ -107,7 +107,7 @@ impl Rows<'_> {
             paragraph(
                 &mut text,
                 "",
-                "* outside its own interval: cancelling other parameters moved this estimate to a value that the data contradict",
+                "* outside its own interval: eliminating other parameters moved this estimate to a value that the data contradict",
             );
         }
         text.push_str(&self.sums(&names));

@@ -247,7 +247,7 @@ pub fn estimate(estimate: &Estimate) -> String {
         paragraph(
             &mut text,
             "",
-            "* outside its own interval: cancelling other parameters moved this estimate to a value that the data contradict",
+            "* outside its own interval: eliminating other parameters moved this estimate to a value that the data contradict",
         );
     }
     text.push_str(&quality(estimate));
@@ -319,7 +319,7 @@ fn quality(estimate: &Estimate) -> String {
             ]
         });
         let header = [
-            "cancelled",
+            "eliminated",
             "% sigma",
             "max/min",
             "error % before",

@@ -16,6 +16,9 @@ use serde_json::json;
 use std::io::{self, Write};
 use std::path::Path;
 
+/// Relative error of the inertia matrix or of gravity above which a warning is printed.
+const INACCURATE: f64 = 0.1;
+
 /// Runs the command for a description.
 ///
 /// # Errors
@@ -57,6 +60,7 @@ pub(super) fn run(
         settings.parameters = Some(given.values);
     }
     let model = robot.serial(&settings)?;
+    warnings.extend(inaccurate(&model));
     let mut files = Vec::new();
     if let Some(states) = states {
         files.push((states.to_owned(), table(&model).into_bytes()));
@@ -81,6 +85,19 @@ pub(super) fn run(
     // A closed stderr is ignored.
     let _ = write!(io::stderr(), "{report}");
     print(&model.text)
+}
+
+/// Warning about errors that lumped inertia leaves.
+fn inaccurate(model: &SerialModel) -> Option<String> {
+    let errors = [Some(model.inertia_matrix), model.gravity];
+    let largest = errors.iter().flatten().map(|error| error.rms);
+    let largest = largest.fold(0.0, f64::max);
+    (largest > INACCURATE).then(|| {
+        format!(
+            "the serial model differs by up to {:.0} % rms, since lumped inertia cannot follow loops that change their shape: use the closed model where this matters",
+            100.0 * largest
+        )
+    })
 }
 
 /// The report as text.

@@ -282,7 +282,7 @@ fn fault_check(model: &dyn Model, runs: &[Log], fault: Fault, others: &[Fault], 
             None,
             Some(i),
             format!(
-                "the torques of `{}` and `{}` look swapped: check the columns of the log",
+                "the torques of `{}` and `{}` look swapped, or their positions: check the columns of the log",
                 name(i),
                 name(j)
             ),

@@ -22,7 +22,7 @@ pub(crate) fn section(contents: &Contents<'_>) -> Section {
     let mut rows = structural(identification);
     rows.extend(on_the_data(identification));
     rows.extend(not_needed(identification));
-    rows.extend(cancelled_by_rule(identification));
+    rows.extend(eliminated_by_rule(identification));
     let body = if rows.is_empty() {
         paragraph("Every standard parameter of the robot was identified individually.")
     } else {
@@ -82,7 +82,7 @@ fn on_the_data(identification: &Identification) -> Vec<Row> {
 
 /// Base parameters that are not recommended.
 fn not_needed(identification: &Identification) -> Vec<Row> {
-    let cancelled = |estimate: &Estimate| {
+    let eliminated = |estimate: &Estimate| {
         of(identification, estimate.model, Stage::Base).map_or_else(String::new, |base| {
             let names = base.parameters.iter().map(|one| one.name.as_str());
             names_without(names, estimate).join(", ")
@@ -92,13 +92,13 @@ fn not_needed(identification: &Identification) -> Vec<Row> {
     for_each(
         &of_stage(identification, Stage::Recommended),
         why,
-        cancelled,
+        eliminated,
     )
 }
 
 /// Parameters that the r_σ rule removes although the data determine them.
-fn cancelled_by_rule(identification: &Identification) -> Vec<Row> {
-    let cancelled = |essential: &Estimate| {
+fn eliminated_by_rule(identification: &Identification) -> Vec<Row> {
+    let eliminated = |essential: &Estimate| {
         let answers = answers(identification);
         let answer = answers.iter().find(|one| one.model == essential.model);
         let parameters = answer.iter().flat_map(|one| &one.parameters);
@@ -112,8 +112,8 @@ fn cancelled_by_rule(identification: &Identification) -> Vec<Row> {
         });
         named.collect::<Vec<_>>().join(", ")
     };
-    let why = "Cancelled by the r_σ rule alone. The data determine them: their 95 % intervals exclude zero, and half their widths are given in parentheses. The recommended model keeps them.";
-    for_each(&of_stage(identification, Stage::Essential), why, cancelled)
+    let why = "Eliminated by the r_σ rule alone. The data determine them: their 95 % intervals exclude zero, and half their widths are given in parentheses. The recommended model keeps them.";
+    for_each(&of_stage(identification, Stage::Essential), why, eliminated)
 }
 
 /// One row for each model with such parameters.

@@ -62,7 +62,7 @@ fn sentence(estimate: &Estimate, recommended: Option<&Estimate>) -> String {
     let taken = estimate.removals.iter().filter(|one| one.accepted).count();
     let _ = write!(
         text,
-        "The r_σ rule cancels {taken} and leaves {}{}.",
+        "The r_σ rule eliminates {taken} and leaves {}{}.",
         estimate.parameters.len(),
         because(estimate)
     );
@@ -94,7 +94,7 @@ fn path(
         entries.push(("second", "validation parts"));
     }
     let r_sigma = identification.settings.r_sigma;
-    let caption = "Left: the relative error hardly changes while needless parameters are cancelled. It grows from the first one that the data need, where the recommended model stops. Right: the ratio that the r_σ rule tests; the rule stops below the dashed line.";
+    let caption = "Left: the relative error hardly changes while needless parameters are eliminated. It grows from the first one that the data need, where the recommended model stops. Right: the ratio that the r_σ rule tests; the rule stops below the dashed line.";
     figure(
         &format!("figure-elimination-{}", estimate.model),
         &[errors.svg(), ratio(estimate, r_sigma, end).svg()],
@@ -110,8 +110,8 @@ fn mark(end: Option<usize>) -> Vec<Rule> {
 }
 
 /// Horizontal axis of both plots.
-fn cancelled() -> Axis {
-    Axis::linear("parameters cancelled").including(&[0.0])
+fn eliminated() -> Axis {
+    Axis::linear("parameters eliminated").including(&[0.0])
 }
 
 /// Relative errors along the elimination, for training runs and for validation parts if there are
@@ -133,8 +133,8 @@ fn errors(estimate: &Estimate, end: Option<usize>) -> Chart {
     let case = case_heading(estimate.model);
     Chart {
         title: String::from("Relative error"),
-        description: format!("{case}: relative error after each cancelled parameter"),
-        x: cancelled(),
+        description: format!("{case}: relative error after each eliminated parameter"),
+        x: eliminated(),
         y: Axis::logarithmic("%"),
         lines,
         rules: mark(end),
@@ -155,9 +155,9 @@ fn ratio(estimate: &Estimate, r_sigma: f64, end: Option<usize>) -> Chart {
     Chart {
         title: String::from("Largest by smallest relative σ"),
         description: format!(
-            "{case}: ratio of relative standard deviations after each cancelled parameter"
+            "{case}: ratio of relative standard deviations after each eliminated parameter"
         ),
-        x: cancelled(),
+        x: eliminated(),
         y: Axis::logarithmic(""),
         lines: vec![line.with_dots()],
         rules: [
@@ -211,7 +211,7 @@ fn steps(estimate: &Estimate) -> String {
             Cell::digits(Some(one.relative_error_after_percent), 4),
             Cell::digits(one.held_out_after_percent, 4),
             drift(one),
-            Cell::text(if one.accepted { "cancelled" } else { "kept" }),
+            Cell::text(if one.accepted { "eliminated" } else { "kept" }),
             Cell::prose(&one.reason),
         ]
     });

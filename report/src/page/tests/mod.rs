@@ -350,7 +350,8 @@ fn tables_contain_the_estimates() {
     }
     let limits = text(element(&document, "limits"));
     assert!(
-        limits.contains("No effect on the torques") && limits.contains("Cancelled by the r_σ rule")
+        limits.contains("No effect on the torques")
+            && limits.contains("Eliminated by the r_σ rule")
     );
 }
 

@@ -116,7 +116,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                 ": the torques are almost only noise. Check that they were recorded, and their columns in [data]"
             }
             (.., Some(_)) => {
-                ": the model does not explain the torques. Check signs, units, gains and labels"
+                ": the model does not explain the torques. Check signs, units, gains and labels, the direction of `gravity`, and for bodies, springs or payloads that are missing"
             }
             (.., None) => {
                 ": the torques have much noise, or the model does not explain them. The complete checks, `--checks all`, distinguish these causes"

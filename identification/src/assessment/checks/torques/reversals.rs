@@ -127,7 +127,7 @@ impl TestLimits {
         // The filter also rounds reversals.
         harm.spoil(dry_friction(context));
         let words = format!(
-            "positions and torques look equally filtered, as by a mean of all signals over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the log or of the bus: log without it, or with a cutoff far above the motion",
+            "positions and torques look equally filtered, as by a mean of all signals over {} ms; {}, and rounds off dry friction at reversals. Look for a filter of the log or of the bus, or of the torques alone: log without it, or with a cutoff far above the motion",
             time(one.wald.size()),
             harm.words()
         );

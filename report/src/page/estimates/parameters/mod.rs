@@ -61,7 +61,7 @@ const fn introduction(stage: Stage, is_held_out: bool) -> &'static str {
             "The recommended parameters are the fewest that these data do not refute: all others could be zero together."
         }
         Stage::Base => {
-            "All base parameters: the smallest set of combinations that determines the torques. None was cancelled."
+            "All base parameters: the smallest set of combinations that determines the torques. None was eliminated."
         }
         Stage::Essential => "The parameters that the r_σ rule keeps.",
         Stage::Consistent => "Physically consistent standard parameters.",
@@ -69,7 +69,7 @@ const fn introduction(stage: Stage, is_held_out: bool) -> &'static str {
 }
 
 /// Explanation of the intervals.
-const INTERVALS: &str = "The interval contains the true value in 95 of 100 experiments like this one. At every stage it is that of the model with all base parameters: the shorter intervals of a smaller model hold only if the cancelled parameters are exactly zero. The intervals allow for autocorrelated residuals.";
+const INTERVALS: &str = "The interval contains the true value in 95 of 100 experiments like this one. All intervals are those of the model with all base parameters: the shorter intervals of a smaller model hold only if the eliminated parameters are exactly zero. The intervals allow for autocorrelated residuals.";
 
 /// Names of the parameters in any of the estimates, in the order of the base parameters.
 fn names<'a>(identification: &Identification, estimates: &[&'a Estimate]) -> Vec<&'a str> {
@@ -115,7 +115,7 @@ fn table(identification: &Identification, estimates: &[&Estimate]) -> String {
     }
     .html();
     if parameters().any(is_outside) {
-        html.push_str(&note("* outside its own interval: cancelling other parameters moved this estimate to a value that the data contradict."));
+        html.push_str(&note("* outside its own interval: eliminating other parameters moved this estimate to a value that the data contradict."));
     }
     if parameters().any(misses_truth) {
         html.push_str(&note(
@@ -212,7 +212,7 @@ fn essential(identification: &Identification, answers: &[&Estimate]) -> String {
         })
         .collect();
     let text = format!(
-        "The essential parameters of Briot, Krut and Gautier (2015): the parameter of the largest relative standard deviation is cancelled, again and again, until the largest deviation is less than r_σ = {} times the smallest. The rule tests how precisely a parameter is known, not whether the data need it. It also cancels parameters that the data determine, which biases the others. {}",
+        "The essential parameters of Briot, Krut and Gautier (2015): the parameter of the largest relative standard deviation is eliminated, again and again, until the largest deviation is less than r_σ = {} times the smallest. The rule tests how precisely a parameter is known, not whether the data need it. It also eliminates parameters that the data determine, which biases the others. {}",
         significant(identification.settings.r_sigma, 4),
         counts.join(" ")
     );
