@@ -21,11 +21,11 @@ pub(crate) fn relative(lines: &[LineError], overall: f64) -> f64 {
     }
 }
 
-/// [`relative`] in words: `1.2 %`, or `at most 1.5 % of a torque`.
+/// [`relative`] in words: `1.2 %`, or `at most 1.5 % of each torque`.
 pub(crate) fn relative_words(lines: &[LineError], overall: f64, digits: usize) -> String {
     let percent = significant(relative(lines, overall), digits);
     if is_mixed(lines) {
-        format!("at most {percent} % of a torque")
+        format!("at most {percent} % of each torque")
     } else {
         format!("{percent} %")
     }
@@ -202,7 +202,7 @@ mod tests {
         let mixed = [force.clone(), moment];
         assert!(is_mixed(&mixed));
         assert!((relative(&mixed, 1.5) - 3.0).abs() < 1e-12);
-        assert_eq!(relative_words(&mixed, 1.5, 3), "at most 3 % of a torque");
+        assert_eq!(relative_words(&mixed, 1.5, 3), "at most 3 % of each torque");
         let one_unit = [force.clone(), force];
         assert_eq!(relative_words(&one_unit, 1.0, 3), "1 %");
     }

@@ -217,7 +217,7 @@ fn other_stages(identification: &Identification, shown: &Estimate) -> Option<Str
 fn training_words(estimate: &Estimate) -> String {
     let percent = relative(&estimate.lines, estimate.relative_error_percent);
     if is_mixed(&estimate.lines) {
-        format!("at most {percent:.4} % of a torque")
+        format!("at most {percent:.4} % of each torque")
     } else {
         format!("{percent:.4} %")
     }

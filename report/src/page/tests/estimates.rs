@@ -91,7 +91,7 @@ fn errors_of_each_torque_row_are_in_one_unit() {
     lines.push(LineError::new("phi", "N m", &norms, 1000));
     let text = summary(&mixed, None, Extent::Whole);
     assert!(
-        text.contains("at most 30.0000 % of a torque (training)"),
+        text.contains("at most 30.0000 % of each torque (training)"),
         "{text}"
     );
 }
