@@ -246,7 +246,7 @@ fn invalid_expressions_are_rejected_with_the_reason() {
     };
     assert_eq!(
         refused("q5 + q7", "(i"),
-        "log.csv: there is no column `q7`; the file has `t`, `q5`, `q6`, `i`\n  help: did you mean `q5` for `q7`?\n\
+        "log.csv: there is no column `q7`; the file has `t`, `q5`, `q6`, `i`\n  help: did you mean `q6` for `q7`?\n\
          log.csv: `(i` is neither a column nor an expression of columns: `)` is missing at the end\n  help: put names with blanks or signs in single quotation marks: `'motor 1' / 50`"
     );
     let log_with_units = ("log.csv", "t,q5,cur [A]\n0,1,2\n1,3,0\n2,0,0.25\n");
