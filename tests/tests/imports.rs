@@ -215,6 +215,7 @@ const LAYER_ORDERS: [LayerOrder; 10] = [
             "origins",
             "couplings",
             "motors",
+            "choices",
             "unsupported",
             "assembly",
             "frames",

@@ -55,7 +55,9 @@ fn with_frames(stem: &str) -> Result<Source, Failure> {
     text += &format!("\n[frame.tool]\n{place}");
     let is_single = described.platform.is_none() && described.legs.len() == 1;
     let (first, last) = (described.legs.first(), described.legs.last());
-    for (number, leg) in first.into_iter().chain(last).enumerate() {
+    let ends = first.into_iter().chain(last);
+    // A cable is no body.
+    for (number, leg) in ends.filter(|leg| leg.cable.is_none()).enumerate() {
         let bodies: Vec<_> = leg
             .joints
             .iter()
