@@ -78,13 +78,14 @@ def main():
         "--closed", action="store_true", help="only robots with closed chains, from joint angles"
     )
     parser.add_argument(
-        "--derivatives", action="store_true", help="only derivatives of the dynamics; counts only"
+        "--derivatives", action="store_true", help="only derivatives of the dynamics, in C and Rust"
     )
-    parser.add_argument("--frames", action="store_true", help="only Jacobians of frames; counts only")
+    parser.add_argument("--frames", action="store_true", help="only Jacobians of frames, in C and Rust")
     parser.add_argument("--no-times", action="store_true", help="count only")
     parser.add_argument("--core", type=int, default=0, help="the core on which all programs are timed")
     parser.add_argument("--rounds", type=int, default=15, help="turns of every program")
     arguments = parser.parse_args()
+    given = arguments.only, arguments.samples, not arguments.no_times, arguments.core, arguments.rounds
     if arguments.identification:
         peers = [identification.Pipeline, blockwise.Blockwise]
         print(identification.table(*identification.measure(arguments.core, peers)))
@@ -110,14 +111,12 @@ def main():
         print(closed.measure(arguments.only, arguments.samples))
         return
     if arguments.derivatives:
-        print(derivatives.measure(arguments.only, arguments.samples))
+        print(derivatives.measure(*given))
         return
     if arguments.frames:
-        print(frames.measure(arguments.only, arguments.samples))
+        print(frames.measure(*given))
         return
     if arguments.dynamics:
-        timed = not arguments.no_times
-        given = arguments.only, arguments.samples, timed, arguments.core, arguments.rounds
         print(controller.measure(*given))
         return
     results = []

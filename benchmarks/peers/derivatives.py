@@ -1,4 +1,4 @@
-"""Derivatives of the dynamics by displacement and twist: overact compared with CasADi's best form; counts only.
+"""Derivatives of the dynamics by displacement and twist: overact compared with CasADi's best form.
 
 CasADi differentiates the dynamics of `dynamics.py` along displacements of the pose, or by the twist, in forward
 or reverse mode. Each is done directly, and implicitly as in Carpentier and Mansard 2018: the solved torques or
@@ -9,14 +9,15 @@ the form with the fewest operations after `cse`.
 import os
 import re
 import subprocess
+import sys
 import tempfile
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import casadi
-import numpy as np
 
-from . import controller, dynamics, ours, report
+from . import compiled, controller, dynamics, ours
 from .algebra import Scalar, apply, transpose
 from .casadi_peer import Casadi, count
 from .count import Count
@@ -25,8 +26,6 @@ from .search import PAIR, forms
 
 ROBOTS = ["rx90", "kuka_lwr", "stanford", "dualv", "delta", "hexapod"]
 FUNCTIONS = [f"{of}_dynamics_by_{by}" for of in ("inverse", "forward") for by in ("displacement", "twist")]
-#: Effort of overact's search.
-EFFORT = os.environ.get("EFFORT", "thorough")
 #: Modes in which CasADi differentiates.
 MODES = os.environ.get("MODES", "forward,reverse,jacobian").split(",")
 
@@ -34,6 +33,10 @@ MODES = os.environ.get("MODES", "forward,reverse,jacobian").split(",")
 @dataclass
 class Task(ours.Function):
     """A derivative of standard parameters, and what it differentiates."""
+
+    @property
+    def rust_name(self):
+        return self.name
 
     @property
     def base(self):
@@ -242,7 +245,7 @@ def counts_of(description, names):
     """overact's counts of functions, from the documentation of the generated code."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "robot.rs"
-        call = [ours.BINARY, "generate", description, "-o", path, "--effort", EFFORT]
+        call = [ours.BINARY, "generate", description, "-o", path, "--effort", ours.EFFORT]
         call += ["--functions", ",".join(names)]
         subprocess.run([str(part) for part in call], capture_output=True, text=True, check=True)
         text = path.read_text()
@@ -261,9 +264,8 @@ def documented(text):
     return Count(*[number(kind) for kind in kinds])
 
 
-def measure(only, samples):
-    """The table."""
-    lines, ratios = [], []
+def cells(only, samples):
+    """All derivatives of the robots with CasADi's best forms, after checking their agreement."""
     for robot in ROBOTS:
         if only and only not in robot:
             continue
@@ -271,16 +273,15 @@ def measure(only, samples):
         is_tree = own.motion is None
         driven = {"dof": document["dof"], "joints": [] if is_tree else controller.actuated(robot)}
         for task in tasks(robot, document, is_tree):
-            found = best(own, task, task.columns, document["home_joints"], driven)
-            _, _, form, counted, peer = found
-            given = controller.sample(task, samples)
-            values = np.array([peer(*state.values()).full() for state in given])
-            controller.check(f"{robot}, {task.name}", values, task.evaluate(given))
-            ratio = task.count.operations / counted.operations
-            ratios.append(ratio)
-            line = [f"{document['robot']}, {task.name.replace('_', ' ')}"]
-            line += [report.operations(task.count), report.operations(counted), f"{ratio:.2f}", form]
-            lines.append(line)
-    mean = float(np.exp(np.mean(np.log(ratios))))
-    lines.append(["geometric mean", "", "", f"{mean:.2f}", ""])
-    return report.table(["function", "overact", "CasADi, cse", "ratio", "CasADi's form"], lines)
+            print(f"{task.robot}, {task.name} …", file=sys.stderr, flush=True)
+            given = own, task, task.columns, document["home_joints"], driven
+            form, counted, peer = compiled.kept(task, repr(MODES), partial(best, *given))
+            title = f"{document['robot']}, {task.name.replace('_', ' ')}"
+            cell = compiled.Cell(title, task, counted, form, peer, partial(controller.sample, task))
+            cell.check(samples)
+            yield cell
+
+
+def measure(only, samples, timed, core, rounds):
+    """The table."""
+    return compiled.table(list(cells(only, samples)), timed, core, rounds)

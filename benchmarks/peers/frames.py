@@ -1,4 +1,4 @@
-"""Jacobians of frames: overact compared with CasADi's best form; counts only.
+"""Jacobians of frames: overact compared with CasADi's best form.
 
 A frame is on the last body of a serial robot, on the platform, or on the second body of the first leg. CasADi
 computes the columns of the joints in the frame of any body (geometric), or differentiates the position in forward
@@ -7,14 +7,13 @@ joints are multiplied by the reduced Jacobian of the leg. `best` takes the form 
 `cse`.
 """
 
-import tempfile
+import sys
 from dataclasses import dataclass
-from pathlib import Path
+from functools import partial
 
 import casadi
-import numpy as np
 
-from . import controller, derivatives, dynamics, ours, report
+from . import compiled, controller, derivatives, dynamics, ours, timing
 from .algebra import ZERO, add, apply, cross, matrix, product, transpose, vector
 from .casadi_peer import Casadi
 from .closure import close
@@ -43,23 +42,27 @@ AT = [0.1, 0.05, 0.2]
 
 @dataclass
 class Task(ours.Function):
-    """The Jacobian of a frame, with the description that has the frame."""
+    """The Jacobian of a frame; without a body, of the platform or the last body."""
 
-    text: str = ""
+    body: str | None = None
 
-    def described(self, work):
-        """Calls a function with the path of the description."""
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / f"{self.robot}.toml"
-            path.write_text(self.text)
-            return work(path)
+    @property
+    def module(self):
+        return "_".join([self.robot, *(self.body or "").split(".")]).rstrip("_")
 
-    def evaluate(self, sample):
-        states = [{key: list(value) for key, value in state.items()} for state in sample]
-        found = self.described(
-            lambda path: ours.overact("evaluate", path, self.name, "--states", "-", stdin=ours.json.dumps(states))
-        )
-        return np.array([one[self.name] for one in found["results"]])
+    @property
+    def path(self):
+        """The description of the robot with the frame."""
+        where = f'body = "{self.body}"\n' if self.body else ""
+        at = ", ".join(f'"{one} m"' for one in AT)
+        found = timing.BUILD / "frames" / f"{self.module}.toml"
+        text = ours.description(self.robot).read_text()
+        timing.write(found, f"{text}\n[frame.tool]\n{where}at = [{at}]\n")
+        return found
+
+    @property
+    def rust_name(self):
+        return self.name
 
 
 def point_columns(model, body, at, frame):
@@ -169,11 +172,13 @@ def candidates(robot, task, homes, driven, body):
                 yield rank, index, f"{mode}, {own}", counted, function
 
 
+def best(*given):
+    """CasADi's form with the fewest operations."""
+    return min(candidates(*given), key=lambda entry: entry[:2])
+
+
 def task_of(robot, body, document):
     """The Jacobian of a frame of a robot, with its count."""
-    where = f'body = "{body}"\n' if body else ""
-    at = ", ".join(f'"{one} m"' for one in AT)
-    text = f"{ours.description(robot).read_text()}\n[frame.tool]\n{where}at = [{at}]\n"
     is_tree = load(ours.description(robot)).motion is None
     inputs = [("joints", document["dof"])] if is_tree else [("pose", len(document["pose"]))]
     task = Task(
@@ -186,15 +191,14 @@ def task_of(robot, body, document):
         columns=[],
         count=None,
         document=document,
-        text=text,
+        body=body,
     )
-    task.count = task.described(lambda path: derivatives.counts_of(path, [task.name])[task.name])
+    task.count = derivatives.counts_of(task.path, [task.name])[task.name]
     return task
 
 
-def measure(only, samples):
-    """The table."""
-    lines, ratios = [], []
+def cells(only, samples):
+    """All frames with CasADi's best forms, after checking their agreement."""
     for robot, body in CELLS:
         if only and only not in robot:
             continue
@@ -203,16 +207,15 @@ def measure(only, samples):
         driven = {"dof": document["dof"], "joints": [] if is_tree else controller.actuated(robot)}
         driven["pose"] = None if is_tree else document["pose"]
         task = task_of(robot, body, document)
-        found = candidates(own, task, document["home_joints"], driven, body)
-        _, _, form, counted, peer = min(found, key=lambda entry: entry[:2])
-        given = controller.states(task, samples, 1)
-        values = np.array([peer(*state.values()).full() for state in given])
-        controller.check(f"{robot}, {task.name}", values, task.evaluate(given))
-        ratio = task.count.operations / counted.operations if counted.operations else 1.0
-        ratios.append(ratio)
-        where = body or ("last body" if is_tree else "platform")
-        line = [f"{document['robot']}, {where}", report.operations(task.count), report.operations(counted)]
-        lines.append([*line, f"{ratio:.2f}", form])
-    mean = float(np.exp(np.mean(np.log(ratios))))
-    lines.append(["geometric mean", "", "", f"{mean:.2f}", ""])
-    return report.table(["frame on", "overact", "CasADi, cse", "ratio", "CasADi's form"], lines)
+        print(f"{task.module} …", file=sys.stderr, flush=True)
+        given = own, task, document["home_joints"], driven, body
+        form, counted, peer = compiled.kept(task, repr(derivatives.MODES), partial(best, *given))
+        title = f"{document['robot']}, {body or ('last body' if is_tree else 'platform')}"
+        cell = compiled.Cell(title, task, counted, form, peer, partial(controller.states, task))
+        cell.check(samples)
+        yield cell
+
+
+def measure(only, samples, timed, core, rounds):
+    """The table."""
+    return compiled.table(list(cells(only, samples)), timed, core, rounds)

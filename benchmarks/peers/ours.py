@@ -16,6 +16,9 @@ ROOT = Path(__file__).resolve().parents[2]
 #: Command line: that of this repository, or another build.
 BINARY = os.environ.get("OVERACT", ROOT / "target" / "release" / "overact")
 
+#: Effort of the search for fewer operations.
+EFFORT = os.environ.get("EFFORT", "thorough")
+
 #: Folders of descriptions: the library, and robots for tests.
 FOLDERS = [ROOT / "robots", ROOT / "tests" / "fixtures"]
 
@@ -54,6 +57,11 @@ class Function:
         return description(self.robot)
 
     @property
+    def module(self):
+        """Name of the module of its description."""
+        return self.robot
+
+    @property
     def rust_name(self):
         base = "_base" if self.kind == "base" else ""
         # A robot without a platform has only one source.
@@ -74,12 +82,12 @@ class Function:
 def inspect(robot):
     """Output of `inspect` for a robot, cached because its functions take minutes to derive."""
     path, kept = description(robot), ROOT / "target" / "benchmarks" / "inspected" / f"{robot}.json"
-    made_of = [str(Path(BINARY).stat().st_mtime_ns), path.read_text()]
+    made_of = [str(Path(BINARY).stat().st_mtime_ns), EFFORT, path.read_text()]
     if kept.exists():
         stored = json.loads(kept.read_text())
         if stored["made of"] == made_of:
             return stored["document"]
-    document = overact("inspect", path)
+    document = overact("inspect", path, "--effort", EFFORT)
     kept.parent.mkdir(parents=True, exist_ok=True)
     kept.write_text(json.dumps({"made of": made_of, "document": document}))
     return document

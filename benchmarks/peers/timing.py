@@ -1,8 +1,8 @@
 """Times of compiled functions, all in one run and on one core.
 
 Every function becomes a program with the same loop in its language. It reads the same states, calls the
-function for each, and prints the shortest time of many batches. The programs alternate, so that other work of
-the machine affects all of them.
+function for each, and prints the shortest and the median time of many batches. The programs alternate, so that
+other work of the machine affects all of them.
 """
 
 import os
@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .ours import BINARY, ROOT, description
+from .ours import BINARY, EFFORT, ROOT
 from .states import states
 
 BUILD = ROOT / "target" / "benchmarks"
@@ -39,6 +39,14 @@ class Build:
 NATIVE = Build("cc -march=native", os.environ.get("CC", "cc"), ("-O3", "-march=native"))
 
 
+@dataclass(frozen=True)
+class Times:
+    """Nanoseconds per call: the shortest and the median batch of a run."""
+
+    shortest: float
+    median: float
+
+
 @dataclass
 class Program:
     """An executable that times one function."""
@@ -53,7 +61,8 @@ class Program:
         )
         if done.returncode:
             raise RuntimeError(f"{self.path}: {done.stderr.strip()}")
-        return float(done.stdout)
+        shortest, median = map(float, done.stdout.split())
+        return Times(shortest, median)
 
 
 def write(path, text):
@@ -94,13 +103,13 @@ ANY, ANY_PLAIN, THIS = ("dispatch", "target"), ("std", "target-plain"), ("std", 
 def rust_crate(functions, features):
     """A crate with the modules that hold overact's functions, in cargo's default release profile."""
     folder = BUILD / "ours"
-    robots = sorted({function.robot for function in functions})
-    for robot in robots:
-        names = ",".join(sorted({f.rust_name for f in functions if f.robot == robot}))
-        command = [BINARY, "generate", description(robot), "--functions", names]
+    paths = {function.module: function.path for function in functions}
+    for module, path in sorted(paths.items()):
+        names = ",".join(sorted({f.rust_name for f in functions if f.module == module}))
+        command = [BINARY, "generate", path, "--effort", EFFORT, "--functions", names]
         done = subprocess.run(command, capture_output=True, text=True, check=True)
-        write(folder / "src" / f"{robot}.rs", done.stdout)
-    modules = "".join(f"pub mod {robot};\n" for robot in robots)
+        write(folder / "src" / f"{module}.rs", done.stdout)
+    modules = "".join(f"pub mod {module};\n" for module in sorted(paths))
     write(folder / "src" / "lib.rs", (TEMPLATES / "lib.rs").read_text() + modules)
     manifest = (TEMPLATES / "Cargo.toml").read_text()
     write(folder / "Cargo.toml", manifest.replace("@ROOT@", str(ROOT)).replace("@FEATURES@", features))
@@ -115,7 +124,7 @@ def rust_programs(functions, template="main.rs", dependencies=(), build=ANY):
     shutil.rmtree(folder / "src" / "bin", ignore_errors=True)
     programs = []
     for function in functions:
-        name = f"{function.robot}_{function.rust_name}_{template.removesuffix('.rs')}"
+        name = f"{function.module}_{function.rust_name}_{template.removesuffix('.rs')}"
         write(folder / "src" / "bin" / f"{name}.rs", rust_main(function, template))
         programs.append(Program("overact", target / "release" / name))
     if dependencies:
@@ -134,7 +143,7 @@ def rust_main(function, template):
     starts = np.cumsum([0] + [length for _, length in function.inputs])
     spans = [f"values[{a}..{b}].try_into()?" for a, b in zip(starts, starts[1:], strict=False)]
     text = (TEMPLATES / template).read_text()
-    call = f"{function.robot}::{function.document['robot']}::{function.rust_name}"
+    call = f"{function.module}::{function.document['robot']}::{function.rust_name}"
     arguments = [f"&s.{i}" for i in range(len(function.inputs))]
     written = "()"
     # The peers also write into the caller's array.
@@ -143,9 +152,9 @@ def rust_main(function, template):
         call, written = f"{call}_into", f"[[0.0_f64; {columns}]; {rows}]"
         arguments.append("&mut written")
     for key, value in {
-        "MODULE": function.robot,
-        "TYPES": ", ".join(f"[f64; {length}]" for _, length in function.inputs),
-        "READ": ", ".join(spans),
+        "MODULE": function.module,
+        "TYPES": "".join(f"[f64; {length}]," for _, length in function.inputs),
+        "READ": "".join(f"{span}," for span in spans),
         "LENGTHS": ", ".join(str(length) for _, length in function.inputs),
         "TOTAL": str(starts[-1]),
         "CALL": call,
@@ -175,10 +184,13 @@ def outputs(program, path, core, shape):
     return np.fromfile(dump).reshape(-1, *shape)
 
 
-def compare(programs, states, core=0, rounds=15):
-    """Nanoseconds per call of each program: the shortest of all rounds, the programs alternating."""
+def compare(programs, states, core=0, rounds=15, batches=BATCHES, statistic="shortest"):
+    """Nanoseconds per call of each program, the programs alternating: smallest of all rounds.
+
+    The statistic of a round is that of `Times`.
+    """
     best = [float("inf")] * len(programs)
     for _ in range(rounds):
         for index, program in enumerate(programs):
-            best[index] = min(best[index], program.run(states, core, BATCHES))
+            best[index] = min(best[index], getattr(program.run(states, core, batches), statistic))
     return best

@@ -1,4 +1,4 @@
-//! Calls a model for successive states and prints the shortest time per call in nanoseconds.
+//! Calls a model for successive states; prints the shortest and the median time per call in nanoseconds.
 use overact_timed::{Output, @MODULE@};
 use std::{env, error::Error, fs, hint::black_box, time::Instant};
 
@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let values: Vec<f64> = bytes.as_chunks().0.iter().map(|b| f64::from_le_bytes(*b)).collect();
     let states = values.chunks(@TOTAL@).map(state).collect::<Result<Vec<State>, _>>()?;
     let mut written = @WRITTEN@;
-    let mut best = f64::INFINITY;
+    let mut times = Vec::new();
     for _ in 0..arguments[2].parse()? {
         let start = Instant::now();
         for s in &states {
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             black_box(&@CALL@(@ARGUMENTS@));
             black_box(&mut written);
         }
-        best = best.min(start.elapsed().as_secs_f64() * 1e9 / states.len() as f64);
+        times.push(start.elapsed().as_secs_f64() * 1e9 / states.len() as f64);
     }
     if let Some(path) = arguments.get(3) {
         let mut bytes = Vec::new();
@@ -34,6 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         fs::write(path, bytes)?;
     }
-    println!("{best:.3}");
+    times.sort_by(f64::total_cmp);
+    println!("{:.3} {:.3}", times[0], times[times.len() / 2]);
     Ok(())
 }
