@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import blockwise, closed, controller, derivatives, frames, identification, logs, ours, pinocchio_peer, report, table, timing
+from . import blockwise, closed, controller, derivatives, frames, identification, logs, ours, pinocchio_cpp, pinocchio_peer, report, table, timing
 from .description import load
 from .ours import Function
 from .peers import Model, check, models
@@ -67,7 +67,7 @@ def main():
     parser.add_argument(
         "--blocks", action="store_true", help="only the evaluation over blocks beside the compiled function"
     )
-    parser.add_argument("--pinocchio", action="store_true", help="only Pinocchio's regressor of serial robots")
+    parser.add_argument("--pinocchio", action="store_true", help="only Pinocchio's regressor of serial robots, and its derivatives in C++")
     parser.add_argument(
         "--dynamics", action="store_true", help="only dynamics of given parameters, as a controller needs them"
     )
@@ -100,6 +100,7 @@ def main():
     if arguments.pinocchio:
         os.sched_setaffinity(0, {arguments.core})
         print(report.calls(pinocchio_peer.measure_all()))
+        print(f"\n{pinocchio_cpp.measure(arguments.core, arguments.rounds)}")
         return
     if arguments.table:
         # Print each robot's results as soon as they are available, because all of them take long.

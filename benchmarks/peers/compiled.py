@@ -2,15 +2,15 @@
 
 All programs call their function for the same random states and take turns on one core. CasADi's code is that of
 its form with the fewest operations. It is compiled by GCC and Clang with `-march=native`, with and without
-`-ffast-math`; the fastest of the four counts. overact's C code is compiled by both with `-march=native`, since its
-checks of the inputs need infinities and NaN; the faster counts. overact's Rust has `target-cpu=native`.
+`-ffast-math`; the fastest of the four counts. So is overact's C code, with `-fno-finite-math-only` in addition to
+`-ffast-math`, since its checks of the inputs need infinities and NaN. overact's Rust has `target-cpu=native`.
 """
 
 import hashlib
 import json
 import subprocess
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import casadi
@@ -20,6 +20,9 @@ from . import casadi_peer, controller, ours, report, timing
 from .count import Count
 from .table import DERIVING, FAST, NATIVE
 
+#: Builds of overact's C code.
+OWN = [*NATIVE, *[replace(build, flags=(*build.flags, "-fno-finite-math-only")) for build in FAST]]
+OWN = [replace(build, title=f"{build.title}, own") for build in OWN]
 #: Number of states, and of passes through them in a round; the median pass of a round counts.
 STATES, PASSES = 1000, 31
 
@@ -53,8 +56,13 @@ class Cell:
         if self.times:
             rust, own, peer = (self.times[kind] for kind in ("Rust", "C", "CasADi"))
             found += [f"{t[0]:.0f}" for t in (rust, own, peer)] + [f"{t[0] / peer[0]:.2f}" for t in (rust, own)]
-            found += [own[1], peer[1]]
+            found += [own[1].removesuffix(", own"), peer[1]]
         return [*found, self.form]
+
+
+def is_selected(robot, only):
+    """Whether a robot's name contains one of the texts, which commas separate."""
+    return not only or any(one in robot for one in only.split(","))
 
 
 def kept(function, made_of, make):
@@ -93,7 +101,7 @@ def time(cell, rust, core, rounds):
     timing.write_states(path, cell.sample(STATES, 2))
     programs = [("Rust", "", rust)]
     for kind, code, builds in (
-        ("C", own_code(function), NATIVE),
+        ("C", own_code(function), OWN),
         ("CasADi", casadi_peer.c_code(cell.peer), [*NATIVE, *FAST]),
     ):
         for build in builds:

@@ -267,7 +267,7 @@ def documented(text):
 def cells(only, samples):
     """All derivatives of the robots with CasADi's best forms, after checking their agreement."""
     for robot in ROBOTS:
-        if only and only not in robot:
+        if not compiled.is_selected(robot, only):
             continue
         document, own = ours.inspect(robot), load(ours.description(robot))
         is_tree = own.motion is None

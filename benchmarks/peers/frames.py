@@ -200,7 +200,7 @@ def task_of(robot, body, document):
 def cells(only, samples):
     """All frames with CasADi's best forms, after checking their agreement."""
     for robot, body in CELLS:
-        if only and only not in robot:
+        if not compiled.is_selected(robot, only):
             continue
         document, own = ours.inspect(robot), load(ours.description(robot))
         is_tree = own.motion is None

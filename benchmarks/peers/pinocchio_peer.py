@@ -12,18 +12,11 @@ import pinocchio as pin
 from . import ours
 from .description import load
 from .peers import check
+from .pinocchio_bodies import placement_of
 from .states import states
 from .works import WORKS, Work
 
 SYMBOLS = ["m", "mx", "my", "mz", "xx", "xy", "yy", "xz", "yz", "zz"]
-
-
-def turn(axis, angle):
-    return pin.SE3(pin.AngleAxis(angle, np.array(axis)).toRotationMatrix(), np.zeros(3))
-
-
-def shift(vector):
-    return pin.SE3(np.eye(3), np.array(vector))
 
 
 def model_of(robot):
@@ -35,12 +28,8 @@ def model_of(robot):
         (motion,) = [e for e in (joint.theta, joint.r) if e.terms]
         if list(motion.terms.values()) != [1.0]:
             raise NotImplementedError("a joint that turns against its variable")
-        placement = turn([0.0, 0.0, 1.0], joint.gamma) * shift([0.0, 0.0, joint.b])
-        placement = placement * turn([1.0, 0.0, 0.0], joint.alpha) * shift([joint.d, 0.0, 0.0])
-        placement = placement * turn([0.0, 0.0, 1.0], joint.theta.constant)
-        placement = placement * shift([0.0, 0.0, joint.r.constant])
         kind = pin.JointModelRZ() if joint.kind == "revolute" else pin.JointModelPZ()
-        parent = model.addJoint(parent, kind, placement, joint.name)
+        parent = model.addJoint(parent, kind, placement_of(joint), joint.name)
     return model
 
 

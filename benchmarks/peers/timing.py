@@ -18,6 +18,8 @@ from .states import states
 
 BUILD = ROOT / "target" / "benchmarks"
 TEMPLATES = Path(__file__).parent / "templates"
+#: Command in front of each timed program, such as `chrt -f 50` on a machine that does other work.
+PRIORITY = os.environ.get("PRIORITY", "").split()
 #: Number of states in a program, and of timed batches.
 STATES, BATCHES = 256, 200
 
@@ -54,8 +56,12 @@ class Program:
     title: str
     path: Path
 
+    @property
+    def command(self):
+        return [self.path]
+
     def run(self, states, core, batches, dump=None):
-        command = ["taskset", "-c", str(core), self.path, states, str(batches)]
+        command = [*PRIORITY, "taskset", "-c", str(core), *self.command, states, str(batches)]
         done = subprocess.run(
             [*command, *([dump] if dump else [])], capture_output=True, text=True, check=False
         )
@@ -189,8 +195,13 @@ def compare(programs, states, core=0, rounds=15, batches=BATCHES, statistic="sho
 
     The statistic of a round is that of `Times`.
     """
+    return compare_each([(program, states) for program in programs], core, rounds, batches, statistic)
+
+
+def compare_each(programs, core, rounds, batches, statistic):
+    """The same for pairs of a program and its states."""
     best = [float("inf")] * len(programs)
     for _ in range(rounds):
-        for index, program in enumerate(programs):
+        for index, (program, states) in enumerate(programs):
             best[index] = min(best[index], getattr(program.run(states, core, batches), statistic))
     return best

@@ -16,19 +16,12 @@ import pinocchio as pin
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "benchmarks"))
 from peers.description import INERTIA, load  # noqa: E402
+from peers.pinocchio_bodies import placement_of, standard_parameters  # noqa: E402
 
 ROBOTS = ["robots/rx90", "robots/tx40", "robots/stanford", "robots/kuka_lwr", "robots/dvrk_mtm"]
 ROBOTS += ["tests/fixtures/puma560", "tests/fixtures/branched_arm"]
 #: Inputs of the functions of a tree.
 KEYS = ("joints", "joint_velocities", "joint_accelerations")
-
-
-def turn(axis, angle):
-    return pin.SE3(pin.AngleAxis(angle, np.array(axis)).toRotationMatrix(), np.zeros(3))
-
-
-def shift(vector):
-    return pin.SE3(np.eye(3), np.array(vector))
 
 
 def depth_first(joints, antecedent=None):
@@ -53,10 +46,7 @@ class Tree:
         names, rows = [joint.name for joint in leg.joints if joint.name in joint.position.terms], []
         for joint in depth_first(leg.joints):
             parent, own = (0, base) if joint.antecedent is None else self.bodies[leg.joints[joint.antecedent].name]
-            placement = own * turn([0.0, 0.0, 1.0], joint.gamma) * shift([0.0, 0.0, joint.b])
-            placement = placement * turn([1.0, 0.0, 0.0], joint.alpha) * shift([joint.d, 0.0, 0.0])
-            placement = placement * turn([0.0, 0.0, 1.0], joint.theta.constant)
-            placement = placement * shift([0.0, 0.0, joint.r.constant])
+            placement = own * placement_of(joint)
             if joint.kind == "fixed":
                 self.bodies[joint.name] = parent, placement
             else:
@@ -73,12 +63,7 @@ class Tree:
     def add_body(self, name):
         inertia = pin.Inertia.Random()
         self.model.appendBodyToJoint(self.bodies[name][0], inertia, self.bodies[name][1])
-        mass, first = inertia.mass, inertia.mass * inertia.lever
-        lever = inertia.lever
-        tensor = inertia.inertia + mass * (lever @ lever * np.eye(3) - np.outer(lever, lever))
-        own = {"m": mass, "mx": first[0], "my": first[1], "mz": first[2]}
-        own |= {a + b: tensor["xyz".index(a), "xyz".index(b)] for a, b in ("xx", "xy", "xz", "yy", "yz", "zz")}
-        self.values |= {f"{symbol}_{name}": value for symbol, value in own.items()}
+        self.values |= standard_parameters(inertia, name)
 
     @property
     def dof(self):
