@@ -3,8 +3,8 @@
     python tests/peers/derivatives.py OVERACT
 
 Robots are trees of `robots/` and `tests/fixtures/`, also branched and coupled ones. References are
-`computeRNEADerivatives` and, for the accelerations, its inertia matrix. Prints a line for each robot with the largest relative
-differences; the exit code is 1 if one is 1e-9 or larger, and 0 with a message without Pinocchio.
+`computeRNEADerivatives` and, for the accelerations, its inertia matrix. Prints a line for each robot with the
+largest relative differences; the exit code is 1 if one is 1e-9 or larger, and 0 with a message without Pinocchio.
 """
 
 import sys

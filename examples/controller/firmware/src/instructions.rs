@@ -176,8 +176,10 @@ fn rows(random: &mut Random) {
     ) else {
         return;
     };
-    let single =
-        Filter::<PARAMETERS, f32>::from_standard_deviations(&[0.0; PARAMETERS], &[10.0; PARAMETERS]);
+    let single = Filter::<PARAMETERS, f32>::from_standard_deviations(
+        &[0.0; PARAMETERS],
+        &[10.0; PARAMETERS],
+    );
     let mut constant = filter.clone();
     let (Ok(mut filter), Ok(Ok(mut single)), Ok(mut payload), Ok(mut single_payload)) = (
         filter.with_forgetting(Forgetting::Directional(0.999)),
