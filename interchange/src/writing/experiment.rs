@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 /// Number of harmonics of a run.
 const HARMONICS: f64 = 5.0;
 /// Ratio of filter cutoff to the highest harmonic, above the limit that the identification checks.
-const CUTOFF: f64 = 14.0;
+const CUTOFF: f64 = 12.2;
 /// Sampling frequency, Hz.
 const SAMPLING: f64 = 1000.0;
 
