@@ -184,7 +184,7 @@ impl RobotModel {
         let mut step = TotalCost::from(Cost::default());
         // The bounds of the next step.
         step.once.multiplications += 3;
-        if self.mechanism.is_parasitic() {
+        if self.mechanism.has_dependent_coordinates() {
             // The start is checked. A short step leaves the closures once, and is checked after the
             // correction.
             let turn = self.displacement_with_correction();
@@ -206,9 +206,16 @@ impl RobotModel {
         total
     }
 
-    /// One iteration of `parasitic_motion::displace`: all six components displace the start, and the dependent
-    /// ones are corrected.
+    /// One iteration of `parasitic_motion::displace` or `dependent_joints::displace`: all components
+    /// displace the start, and the dependent ones are corrected.
     fn displacement_with_correction(&self) -> TotalCost {
+        if self.mechanism.has_dependent_joints() {
+            let mut turn = TotalCost::from(displacement(self.mechanism.pose_len(), false));
+            turn.once += elimination(self.mechanism.pose_len() - self.mechanism.dof());
+            turn.call(self.of(Function::PoseError, MotionInput::Pose));
+            turn.call(self.of(Function::PoseErrorJacobian, MotionInput::Pose));
+            return turn;
+        }
         let mut turn = TotalCost::from(displacement(6, true));
         turn.once += elimination(6 - self.mechanism.dof());
         turn.call(self.of(Function::BlockedError, MotionInput::Pose));

@@ -33,14 +33,14 @@ pub enum Error {
         /// Ratio of the determinant at the home configuration to that at the state.
         condition: f64,
     },
-    /// A leg does not allow the pose: with parasitic motion, not all coordinates are independent.
+    /// A leg does not allow the pose, not all of whose coordinates are independent.
     NotClosed {
         /// Name of the leg.
         leg: &'static str,
         /// Closure error in a direction in which no joint moves the leg's end (m, rad).
         gap: f64,
     },
-    /// The independent coordinates of a platform with parasitic motion do not determine the others.
+    /// The independent coordinates of a pose with dependent ones do not determine the others.
     SingularCoordinates {
         /// Ratio of the determinant at the home configuration to that at the state.
         condition: f64,
@@ -147,7 +147,7 @@ impl fmt::Display for Error {
             ),
             Self::SingularCoordinates { condition } => write!(
                 f,
-                "the independent coordinates do not determine the platform's motion here: their determinant is {}",
+                "the independent coordinates do not determine the others here: their determinant is {}",
                 Smaller(condition)
             ),
             Self::MassMatrix => write!(

@@ -53,6 +53,7 @@ impl Sizes {
             Extent::PayloadParameters => self.payload_parameters,
             Extent::Free => self.free(),
             Extent::Blocked => self.blocked(),
+            Extent::Dependent => self.dependent(),
             Extent::Fixed(count) => count,
         }
     }
@@ -73,6 +74,12 @@ impl Sizes {
     #[must_use]
     pub const fn blocked(&self) -> usize {
         self.free().saturating_sub(self.dof)
+    }
+
+    /// Number of dependent joints in the pose of a skeleton.
+    #[must_use]
+    pub const fn dependent(&self) -> usize {
+        self.pose.saturating_sub(self.dof)
     }
 
     /// n - r, the number of independent internal torques.
@@ -169,6 +176,8 @@ pub enum Extent {
     Free,
     /// Directions that the legs block.
     Blocked,
+    /// Dependent joints in the pose of a skeleton.
+    Dependent,
     /// A number that is the same for all robots.
     Fixed(usize),
 }

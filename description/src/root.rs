@@ -10,7 +10,7 @@ use crate::robot::model::{Leg, Motor, Platform, Spanned, actuators};
 use crate::robot::shape::{MOST_JOINTS, Shape};
 use crate::robot::{
     frame, leg,
-    leg::{cable_robot, chain, coupled_motor},
+    leg::{cable_robot, chain, coupled_motor, dependent},
     payload, platform, point_spring, shape,
 };
 use crate::toml_text::reader::{Context, Item, Table};
@@ -109,6 +109,7 @@ fn root(table: &Table<'_, '_>) -> Option<Description> {
     let motors = motors(table, &shapes, platform_item.is_some(), &mut legs, &scope);
     chain::attach(&shapes, platform_item.is_some(), &mut legs, table.context);
     check_ends(table, &shapes, platform_item.is_some(), &legs);
+    dependent::check(&shapes, platform_item.is_some(), &legs, table.context);
     let has_platform = platform_item.is_some();
     cable_robot::check(
         table.context,

@@ -391,6 +391,7 @@ const fn counted(extent: Extent) -> &'static str {
         Extent::PayloadParameters => "n_l",
         Extent::Free => "6",
         Extent::Blocked => "6 - r",
+        Extent::Dependent => "pose - r",
         Extent::Fixed(1) => "1",
         Extent::Fixed(3) => "3",
         Extent::Fixed(6) => "6",

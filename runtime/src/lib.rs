@@ -30,7 +30,8 @@
 //!
 //! The runtime has the [`Model`] trait, [`Error`], a few functions of [`math`], and the macro
 //! `#[redundant_robot("robot.toml")]`. Forward kinematics is in [`forward`], numeric inverse
-//! kinematics in [`inverse`], poses of platforms with parasitic motion in [`parasitic_motion`], and the
+//! kinematics in [`inverse`], poses of platforms with parasitic motion in [`parasitic_motion`], and of skeletons with
+//! dependent joints in [`dependent_joints`], and the
 //! actuator projection for any kept actuators in [`partition`]. [`tension`] distributes the forces of
 //! cable robots. [`transmission`] converts torques, gains and limits between motors and joints, and
 //! [`online`] estimates parameters while the robot moves.
@@ -65,6 +66,7 @@ compile_error!(
 mod readme {}
 
 pub mod block;
+pub mod dependent_joints;
 pub mod float;
 pub mod forward;
 pub mod guard;

@@ -47,6 +47,8 @@ impl Chosen {
                 FunctionForm::new(Function::PoseInClosedForm, MotionInput::Actuators),
                 FunctionForm::new(Function::BlockedError, MotionInput::Pose),
                 FunctionForm::new(Function::BlockedJacobian, MotionInput::Pose),
+                FunctionForm::new(Function::PoseError, MotionInput::Pose),
+                FunctionForm::new(Function::PoseErrorJacobian, MotionInput::Pose),
             ]);
         }
         let from_pose = |one: &FunctionForm| one.from != MotionInput::Joints;

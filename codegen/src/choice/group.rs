@@ -78,6 +78,9 @@ const fn is_kinematic(function: Function) -> bool {
             | Function::PlatformJacobian
             | Function::BlockedError
             | Function::BlockedJacobian
+            | Function::PoseJacobian
+            | Function::PoseError
+            | Function::PoseErrorJacobian
             | Function::JointVelocities
             | Function::JointAccelerations
             | Function::TwistFromActuators

@@ -100,6 +100,7 @@ pub(super) fn reason(meant: Meant, tree: bool) -> &'static str {
         Condition::Parasitic => {
             ": only robots whose platform has `independent` coordinates have it"
         }
+        Condition::DependentJoints => ": only robots with `dependent` joints have it",
         Condition::Masses => ": none of its parameters is a mass",
         Condition::JointsByRule => {
             ": only robots with loops and closed-form joint positions have it"

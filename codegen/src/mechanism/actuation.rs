@@ -76,7 +76,7 @@ fn on_body(
     let own = leg.body_jacobian(&frames, body.joint, point);
     let rates = match shared_velocities(mechanism, body.leg, pose, joints) {
         Some(shared) => rates_per_velocity(leg, &joints[mechanism.leg_range(body.leg)])? * shared,
-        None => mechanism.coordinate_rates(body.leg),
+        None => mechanism.coordinate_rates(body.leg, pose, joints)?,
     };
     let carried = leg.base_body;
     let carried = carried.map_or_else(
@@ -123,12 +123,18 @@ pub(super) fn rates_per_velocity(leg: &Leg, joints: &[f64]) -> Option<DMatrix<f6
 }
 
 impl Mechanism {
-    /// Joint rates of a leg without an end, which are independent coordinates themselves.
-    fn coordinate_rates(&self, leg: usize) -> DMatrix<f64> {
+    /// Joint rates of a leg without an end, which are independent coordinates themselves unless
+    /// they are dependent.
+    fn coordinate_rates(&self, leg: usize, pose: &[f64], joints: &[f64]) -> Option<DMatrix<f64>> {
+        if self.has_dependent_joints() {
+            let range = self.leg_range(leg);
+            let all = self.rates_of_joints(pose, joints)?;
+            return Some(all.rows(range.start, range.len()).into_owned());
+        }
         let own = self.coordinate_range(leg);
-        DMatrix::from_fn(own.len(), self.dof(), |row, column| {
+        Some(DMatrix::from_fn(own.len(), self.dof(), |row, column| {
             f64::from(u8::from(own.start + row == column))
-        })
+        }))
     }
 
     /// Rates of all joints per twist coordinate at the home configuration, n_t × r.
@@ -139,13 +145,16 @@ impl Mechanism {
         if self.is_tree() {
             return Some(DMatrix::identity(self.dof(), self.dof()));
         }
+        if self.has_dependent_joints() {
+            return self.rates_of_joints(&self.home.pose, &self.home.joints);
+        }
         let mut all = DMatrix::zeros(self.joints().len(), self.dof());
         for (index, leg) in self.legs.iter().enumerate() {
             let range = self.leg_range(index);
             let (pose, joints) = (&self.home.pose, &self.home.joints);
             let Some(velocities) = shared_velocities(self, index, pose, joints) else {
                 all.rows_mut(range.start, range.len())
-                    .copy_from(&self.coordinate_rates(index));
+                    .copy_from(&self.coordinate_rates(index, pose, joints)?);
                 continue;
             };
             let rates = if leg.cable.is_some() {

@@ -1,6 +1,7 @@
 //! Checks a description and returns the mechanism: mobility, closure at home, singular legs.
 
 use super::actuation::{rates_per_velocity, shared_velocities};
+use super::dependent::{self, Moving};
 use super::explain;
 use super::home::{Home, approach};
 use super::mobility::Mobility;
@@ -30,13 +31,13 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     }
     check_actuators(description, &mechanism, &mut errors);
     let mut rough = rough_home(description);
-    if !mechanism.is_parasitic() {
+    if !mechanism.has_dependent_coordinates() {
         check_structure(description, &mechanism, &rough, &mut errors);
     } else if errors.is_empty() {
         // If the legs do not allow the rough pose, it is moved onto their closures. An allowed pose
         // stays as it is; the joints start near the closures.
         let near = approach(&mechanism, &rough);
-        let found = closed(&mechanism, &near).or_else(|| closed(&mechanism, &rough));
+        let found = closed_near(&mechanism, &near).or_else(|| closed_near(&mechanism, &rough));
         if let Some(found) = found {
             rough = found.home;
         }
@@ -53,7 +54,7 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
         }
     }
     let mut errors = Diagnostics::new();
-    if mechanism.is_parasitic() {
+    if mechanism.has_dependent_coordinates() {
         check_independent(description, &mechanism, &mut errors);
         if errors.is_empty() {
             check_structure(description, &mechanism, &mechanism.home, &mut errors);
@@ -72,6 +73,18 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     check_held(description, &mechanism)?;
     mechanism.still = still_coordinates(&mechanism);
     Ok(mechanism)
+}
+
+/// The mechanism of a pose with dependent coordinates, with a home near `start` that closes all
+/// legs.
+///
+/// Independent joints of a skeleton stay as they are, as far as the chains allow.
+fn closed_near(mechanism: &Mechanism, start: &Home) -> Option<Mechanism> {
+    if mechanism.is_parasitic() {
+        return closed(mechanism, start);
+    }
+    let own = dependent::closed(mechanism, start, Moving::Dependent);
+    own.or_else(|| dependent::closed(mechanism, start, Moving::All))
 }
 
 /// Chooses the actuators of the actuator projection: those given, or the first that determine the
@@ -117,6 +130,7 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         r: j.r.value,
         variable: j.variable.clone(),
         actuated: j.actuated,
+        dependent: j.dependent.is_some(),
         parameters: j.parameters.clone(),
         motor: j.motor.map(crate::cas::Number::value),
         spring: j.spring.clone(),
@@ -285,7 +299,7 @@ fn check_held(description: &Description, mechanism: &Mechanism) -> Result<(), Di
 }
 
 /// Largest ratio of the condition of chosen independent coordinates to that of the best choice.
-const WEAK: f64 = 1e3;
+pub(super) const WEAK: f64 = 1e3;
 
 /// Largest number of independent joints of a leg: operation counts of its model grow quadratically,
 /// the time of the search with the fourth power.
@@ -345,9 +359,16 @@ fn check_structure(
     }
 }
 
-/// Reports independent coordinates of a platform with parasitic motion if their number is wrong or
-/// they do not determine the others at home.
+/// Reports independent coordinates if their number is wrong or they do not determine the others at
+/// home.
 fn check_independent(description: &Description, mechanism: &Mechanism, errors: &mut Diagnostics) {
+    if mechanism.has_dependent_joints() {
+        let found = dependent::Rated::at_home(mechanism);
+        if let Some(found) = found.filter(|found| !found.is_good()) {
+            errors.push(explain::dependent(description, mechanism, &found));
+        }
+        return;
+    }
     match rated(mechanism) {
         Some(found) if found.condition < WEAK * found.least => {}
         found => errors.push(explain::independent(description, mechanism, found.as_ref())),

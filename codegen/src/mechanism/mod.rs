@@ -12,6 +12,7 @@ mod actuation;
 mod actuators;
 mod cable;
 mod check;
+mod dependent;
 mod explain;
 mod home;
 mod mobility;
@@ -65,6 +66,8 @@ pub struct Joint {
     pub variable: Vec<(usize, Ratio)>,
     /// Whether a motor drives the joint.
     pub actuated: bool,
+    /// Whether the chains determine the joint, which is one of a skeleton or branch.
+    pub dependent: bool,
     /// Standard parameters of the body and the joint that are not absent.
     pub parameters: Vec<StandardParameter>,
     /// Gear ratio, rotor turns per unit of the variable, of a motor that moves other joints and
@@ -327,16 +330,17 @@ impl Mechanism {
         self.legs.first().filter(|_| has_chains)
     }
 
-    /// Indices in [`Self::joints`] of the independent coordinates of a robot without a platform.
+    /// Indices in [`Self::joints`] of the joints in the pose of a robot without a platform.
     ///
-    /// They are the joints of legs without an end: the skeleton and the branches on chains.
+    /// They are the joints of legs without an end: the skeleton and the branches on chains. Those
+    /// that are not dependent are the independent coordinates.
     #[must_use]
     pub fn coordinate_joints(&self) -> Vec<usize> {
         let free = (0..self.legs.len()).filter(|&leg| self.legs[leg].end.is_none());
         free.flat_map(|leg| self.leg_range(leg)).collect()
     }
 
-    /// Range of the joints of a leg without an end among the independent coordinates.
+    /// Range of the joints of a leg without an end in the pose.
     #[must_use]
     pub fn coordinate_range(&self, leg: usize) -> std::ops::Range<usize> {
         let before = self.legs[..leg].iter().filter(|own| own.end.is_none());
@@ -344,11 +348,17 @@ impl Mechanism {
         start..start + self.legs[leg].independent().count()
     }
 
-    /// The joints that are independent coordinates of a robot without a platform.
-    fn independent_joints(&self) -> Vec<JointIndex> {
+    /// The joints in the pose of a robot without a platform.
+    fn pose_joints(&self) -> Vec<JointIndex> {
         let all = self.joints();
         let own = self.coordinate_joints().into_iter();
         own.map(|at| all[at]).collect()
+    }
+
+    /// The joints that are independent coordinates of a robot without a platform.
+    fn independent_joints(&self) -> Vec<JointIndex> {
+        let own = self.pose_joints().into_iter();
+        own.filter(|at| !self.joint(*at).dependent).collect()
     }
 
     /// r, the number of independent coordinates: of the platform, or of the joints of a tree or
@@ -365,7 +375,7 @@ impl Mechanism {
     #[must_use]
     pub fn pose_len(&self) -> usize {
         self.platform.as_ref().map_or_else(
-            || self.independent_joints().len(),
+            || self.coordinate_joints().len(),
             |p| p.motion.pose_coordinates().len(),
         )
     }
@@ -389,7 +399,7 @@ impl Mechanism {
                 let names = platform.motion.coordinates();
                 names.into_iter().map(str::to_owned).collect()
             }
-            None => self.own_names(|name| name),
+            None => self.own_names(self.independent_joints(), |name| name),
         }
     }
 
@@ -403,19 +413,18 @@ impl Mechanism {
                 let names = platform.motion.pose_coordinates();
                 names.into_iter().map(str::to_owned).collect()
             }
-            None => self.own_names(|name| format!("q_{name}")),
+            None => self.own_names(self.pose_joints(), |name| format!("q_{name}")),
         }
     }
 
-    /// Names of the independent joints of a robot without a platform; joints of a skeleton are
-    /// named without their leg.
-    fn own_names(&self, form: impl Fn(String) -> String) -> Vec<String> {
-        let joints = self.independent_joints().into_iter();
+    /// Names of joints of a robot without a platform; those of a skeleton are named without their
+    /// leg.
+    fn own_names(&self, joints: Vec<JointIndex>, form: impl Fn(String) -> String) -> Vec<String> {
         let name = |j: JointIndex| match self.skeleton() {
             Some(_) if j.leg == 0 => self.joint(j).name.clone(),
             _ => self.joint_name(j),
         };
-        joints.map(|j| form(name(j))).collect()
+        joints.into_iter().map(|j| form(name(j))).collect()
     }
 
     /// Name of a leg's standard parameter: `zz_2_leg3`, or `zz_2` in a robot of one leg without a

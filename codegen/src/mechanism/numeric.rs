@@ -289,13 +289,13 @@ impl Mechanism {
     /// Independent rows of a leg's end velocity that determine the joint rates at home, in
     /// ascending order.
     ///
-    /// Rows refer to the six-vector (velocity, angular velocity). Legs that block directions of a
-    /// platform with parasitic motion use the best conditioned rows, others the first.
+    /// Rows refer to the six-vector (velocity, angular velocity). Legs that may block directions of
+    /// a pose with dependent coordinates use the best conditioned rows, others the first.
     #[must_use]
     pub fn closure_rows(&self, leg: usize) -> Vec<usize> {
         let home = &self.home.joints[self.leg_range(leg)];
         let jacobian = self.legs[leg].end_jacobian(home);
-        if self.is_parasitic() {
+        if self.has_dependent_coordinates() {
             let shared = self.legs[leg].shared_components();
             let best = best_conditioned(&jacobian.select_rows(&shared));
             return best.into_iter().map(|row| shared[row]).collect();

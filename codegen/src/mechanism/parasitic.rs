@@ -156,14 +156,31 @@ impl Mechanism {
         platform.is_some_and(|own| matches!(own.motion, Motion::Parasitic { .. }))
     }
 
-    /// Independent coordinates among x, y, z, rx, ry, rz of a platform with parasitic motion.
+    /// Independent ones among the coordinates of a pose with dependent coordinates.
+    ///
+    /// They are counted among x, y, z, rx, ry, rz for a platform with parasitic motion, and among
+    /// the joints in the pose for a skeleton with dependent joints.
     #[must_use]
     pub fn independent_coordinates(&self) -> Option<Vec<usize>> {
+        if self.has_dependent_joints() {
+            return Some(self.independent_places());
+        }
         match self.platform.as_ref()?.motion {
             Motion::Parasitic { independent } => {
                 Some((0..6).filter(|&at| independent[at]).collect())
             }
             _ => None,
+        }
+    }
+
+    /// Number of velocities of a pose with dependent coordinates: six of a platform, or the rates
+    /// of the joints in the pose.
+    #[must_use]
+    pub fn velocity_len(&self) -> usize {
+        if self.is_parasitic() {
+            6
+        } else {
+            self.pose_len()
         }
     }
 
@@ -174,7 +191,9 @@ impl Mechanism {
     /// if these do not determine the others.
     #[must_use]
     pub(crate) fn platform_jacobian(&self, pose: &[f64], joints: &[f64]) -> Option<DMatrix<f64>> {
-        let own = self.independent_coordinates()?;
+        let own = self
+            .independent_coordinates()
+            .filter(|_| self.is_parasitic())?;
         let mut left = Mobility::at(self, pose, joints)?.allowed;
         left.rows_mut(0, 3).scale_mut(self.length_scale());
         if own.len() != left.ncols() {
@@ -190,7 +209,9 @@ impl Mechanism {
 ///
 /// Evaluated at home, where all legs close. `None` if the number of allowed motions differs.
 pub(super) fn rated(mechanism: &Mechanism) -> Option<Rated> {
-    let own = mechanism.independent_coordinates()?;
+    let own = mechanism
+        .independent_coordinates()
+        .filter(|_| mechanism.is_parasitic())?;
     let left = Mobility::at_home(mechanism)?.allowed;
     if own.len() != left.ncols() {
         return None;

@@ -2,6 +2,7 @@
 //! working mode of the home configuration.
 
 use super::cable::wrap_within;
+use super::dependent;
 use super::home::{REGULAR, close_finely, close_within, condition, lenient_limit};
 use super::parasitic::closed;
 use super::{JointKind, Mechanism, Motion};
@@ -108,6 +109,10 @@ fn displaced(
     if mechanism.is_parasitic() {
         return displaced_parasitic(mechanism, direction, spread, is_lenient);
     }
+    if mechanism.has_dependent_joints() {
+        let pose = joints_towards(mechanism, direction, spread);
+        return dependent::follow(mechanism, &pose, is_lenient);
+    }
     let pose = match &mechanism.platform {
         Some(platform) => pose_towards(mechanism, platform.motion, direction, spread),
         None => joints_towards(mechanism, direction, spread),
@@ -176,7 +181,7 @@ pub fn pose_towards(
     pose
 }
 
-/// The independent joints at a distance from home in a direction.
+/// The joints of the pose at a distance from home in a direction.
 fn joints_towards(mechanism: &Mechanism, direction: &[f64], length: f64) -> Vec<f64> {
     let scale = mechanism.length_scale();
     let joints = mechanism.joints();

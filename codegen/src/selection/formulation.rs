@@ -280,7 +280,8 @@ pub(super) fn choices_of_function(mechanism: &Mechanism, function: Function) -> 
         return orders(function);
     }
     let has_forces = has_forces(function);
-    let may_change_axes = !mechanism.is_parasitic() || has_forces || moves_all_legs(function);
+    let may_change_axes =
+        !mechanism.has_dependent_coordinates() || has_forces || moves_all_legs(function);
     let has_motion = has_forces || function.columns().is_some();
     let mut all = vec![Change::Plain];
     all.extend(choices(mechanism, may_change_axes).into_iter().flatten());

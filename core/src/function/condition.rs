@@ -18,6 +18,8 @@ pub enum Condition {
     NumericJoints,
     /// A platform with parasitic motion.
     Parasitic,
+    /// A skeleton with dependent joints.
+    DependentJoints,
     /// Loops, with joints in closed form.
     JointsByRule,
     /// A mass among the parameters.

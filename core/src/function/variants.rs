@@ -23,6 +23,9 @@ pub enum Function {
     PlatformJacobian,
     BlockedError,
     BlockedJacobian,
+    PoseJacobian,
+    PoseError,
+    PoseErrorJacobian,
     JointVelocities,
     JointAccelerations,
     TwistFromActuators,
@@ -54,7 +57,7 @@ pub enum Function {
 
 impl Function {
     /// All functions of all robots, without those of the frames that a description defines.
-    pub const ALL: [Self; 50] = [
+    pub const ALL: [Self; 53] = [
         Self::PoseInClosedForm,
         Self::Joints,
         Self::ActuatorPositions,
@@ -69,6 +72,9 @@ impl Function {
         Self::PlatformJacobian,
         Self::BlockedError,
         Self::BlockedJacobian,
+        Self::PoseJacobian,
+        Self::PoseError,
+        Self::PoseErrorJacobian,
         Self::JointVelocities,
         Self::JointAccelerations,
         Self::TwistFromActuators,

@@ -54,6 +54,7 @@ pub(crate) fn shape<'c, 't>(table: &Table<'c, 't>) -> (CableShape<'c, 't>, Joint
         steps: [const { None }; 6],
         turned: false,
         actuated: true,
+        dependent: None,
         parameters: parameters.unwrap_or_else(|| DEFAULT.to_vec()),
         spring: None,
         known: None,

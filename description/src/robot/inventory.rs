@@ -188,14 +188,15 @@ impl Inventory<'_> {
 /// Independent joints of a robot without a platform, with the names of its coordinates.
 ///
 /// Joints of the first leg have their own names, those of branches include their leg's. Joints of
-/// chains are dependent.
+/// chains, and joints with `dependent = true`, are dependent.
 #[must_use]
 pub fn independent_joints(legs: &[Leg]) -> Vec<(String, &crate::robot::model::Joint)> {
     let mut all = Vec::new();
     let free = legs.iter().enumerate().filter(|(_, leg)| leg.end.is_none());
     for (at, leg) in free {
         let own = leg.joints.iter().enumerate();
-        for (_, joint) in own.filter(|(index, joint)| joint.is_independent(*index)) {
+        let own = own.filter(|(index, joint)| joint.is_independent(*index));
+        for (_, joint) in own.filter(|(_, joint)| joint.dependent.is_none()) {
             let name = &joint.name.value;
             all.push(match at {
                 0 => (name.clone(), joint),

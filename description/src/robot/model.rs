@@ -279,6 +279,9 @@ pub struct Joint {
     pub variable: Vec<(usize, Ratio)>,
     /// Whether a motor drives the joint.
     pub actuated: bool,
+    /// Location of `dependent = true`: a joint of a skeleton or branch whose position the chains
+    /// determine.
+    pub dependent: Option<Span>,
     /// Standard parameters of the body and the joint that are not absent, in order.
     pub parameters: Vec<StandardParameter>,
     /// Rough position at home, rad or m; zero for a coupled or fixed joint.

@@ -122,6 +122,7 @@ impl MotorShape<'_, '_> {
             r: zero,
             variable: value.terms,
             actuated: false,
+            dependent: None,
             parameters,
             home: Number::ZERO,
             motor: Some(ratio?),

@@ -308,6 +308,8 @@ fn joint<'c, 't>(
         .and_then(Item::boolean)
         .unwrap_or(false);
     let driven = actuated_item.as_ref().filter(|_| actuated);
+    let dependent = table.get("dependent");
+    let dependent = dependent.filter(|item| item.boolean() == Some(true));
     if word.value == CompoundJointKind::Simple(JointKind::Fixed) {
         if let Some(item) = driven {
             let message = "a fixed joint cannot be actuated";
@@ -329,7 +331,8 @@ fn joint<'c, 't>(
     let known = table.get("known");
     let pitch = pitch(table, word.value);
     let said = [&spring, &stribeck, &load, &known].map(Option::as_ref);
-    word.value.check(said.into_iter().chain([driven]).flatten());
+    let switches = [driven, dependent.as_ref()];
+    word.value.check(said.into_iter().chain(switches).flatten());
     table.finish();
     JointShape {
         name,
@@ -338,6 +341,7 @@ fn joint<'c, 't>(
         steps,
         turned: false,
         actuated: actuated && (word.value.count() == 1 || word.value == CompoundJointKind::Helical),
+        dependent,
         parameters,
         spring,
         known,

@@ -2,7 +2,7 @@
 
 use super::InterpretedRobot;
 use overact::{
-    Error, Function, Model,
+    Error, Function, Model, dependent_joints,
     forward::{self, Measured},
     guard, parasitic_motion,
 };
@@ -112,7 +112,11 @@ impl InterpretedRobot {
 
     /// Moves a pose along the twist coordinates.
     pub(super) fn displaced(&self, pose: &mut [f64], step: &[f64]) {
-        if let Some(independent) = &self.independent {
+        if let Some(independent) = &self.independent
+            && self.model.mechanism.has_dependent_joints()
+        {
+            self.displaced_joints(pose, step, independent);
+        } else if let Some(independent) = &self.independent {
             parasitic_motion::displace(pose, step, independent, |pose, errors, jacobian| {
                 self.evaluate(Function::BlockedError, &[pose], errors)
                     .and_then(|()| self.evaluate(Function::BlockedJacobian, &[pose], jacobian))
@@ -123,6 +127,30 @@ impl InterpretedRobot {
         } else {
             forward::displace(pose, step);
         }
+    }
+}
+
+impl InterpretedRobot {
+    /// Moves the independent joints of a skeleton's pose, and corrects the dependent ones.
+    fn displaced_joints(&self, pose: &mut [f64], step: &[f64], independent: &[usize]) {
+        let joints = pose.len();
+        let count = joints - independent.len();
+        let workspace = dependent_joints::Workspace {
+            errors: &mut vec![0.0; count],
+            jacobian: &mut vec![0.0; count * joints],
+            square: &mut vec![0.0; count * count],
+        };
+        dependent_joints::displace(
+            pose,
+            step,
+            independent,
+            workspace,
+            |pose, errors, jacobian| {
+                self.evaluate(Function::PoseError, &[pose], errors)
+                    .and_then(|()| self.evaluate(Function::PoseErrorJacobian, &[pose], jacobian))
+                    .map_err(|error| error.error)
+            },
+        );
     }
 }
 

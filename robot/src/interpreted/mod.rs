@@ -40,7 +40,8 @@ enum InputSource {
 pub struct InterpretedRobot {
     model: RobotModel,
     names: Names,
-    /// For platforms with parasitic motion: the independent coordinates among the six.
+    /// Independent coordinates of a pose with dependent ones: among the six of a platform with
+    /// parasitic motion, or among the joints of a skeleton.
     independent: Option<Vec<usize>>,
     functions: Vec<ServedFunction>,
     scratch: Pool<Scratch>,
@@ -129,6 +130,8 @@ impl InterpretedRobot {
                 | Function::ClosureError
                 | Function::BlockedError
                 | Function::BlockedJacobian
+                | Function::PoseError
+                | Function::PoseErrorJacobian
                 | Function::ClosureActuatorJacobian
                 | Function::LegsJacobian
         );

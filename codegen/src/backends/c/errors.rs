@@ -41,7 +41,7 @@ fn kinds(model: &RobotModel) -> Vec<ErrorEntry> {
         name: name.to_owned(),
         text: text.to_owned(),
     };
-    let determine = "do not determine the platform's motion here";
+    let determine = "do not determine the others here";
     let mut kinds = vec![
         kind("OK", "no error"),
         kind("SINGULAR_ACTUATORS", &format!("the actuators {determine}")),
@@ -78,7 +78,7 @@ fn kinds(model: &RobotModel) -> Vec<ErrorEntry> {
             text: format!("leg `{}` is singular here", leg.name),
         });
     }
-    if model.mechanism.is_parasitic() {
+    if model.mechanism.has_dependent_coordinates() {
         kinds.push(kind(
             "SINGULAR_COORDINATES",
             "the independent coordinates do not determine the platform's motion here",

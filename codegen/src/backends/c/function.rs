@@ -279,6 +279,7 @@ const fn extent_name(extent: Extent) -> &'static str {
         Extent::PayloadParameters => "PAYLOAD_PARAMETERS",
         Extent::Free => "FREE",
         Extent::Blocked => "BLOCKED",
+        Extent::Dependent => "DEPENDENT",
         _ => "DOF",
     }
 }

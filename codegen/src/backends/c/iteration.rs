@@ -15,7 +15,13 @@ use crate::model::RobotModel;
 use overact_core::Function;
 
 const DISPLACE: &str = include_str!("text/displace.c");
+const DISPLACE_FREELY: &str = include_str!("text/displace_freely.c");
 const DISPLACE_PARASITIC: &str = include_str!("text/displace_parasitic.c");
+const DISPLACE_JOINTS: &str = include_str!("text/displace_joints.c");
+/// Solution of a square system, for both displacements of poses with dependent coordinates.
+///
+/// The placeholder `ROB_COUNT` is replaced by the macro of its size.
+const ELIMINATE: &str = include_str!("text/eliminate.c");
 const DISPLACE_QUATERNION: &str = include_str!("text/displace_quaternion.c");
 /// Function called by both displacements of poses with a quaternion.
 const TURN: &str = include_str!("text/turn.c");
@@ -46,6 +52,14 @@ const FORWARD_START_PARASITIC: &str = "    const double still[ROB_DOF] = { 0.0 }
     double pose[ROB_POSE];
     if (!(rob_unit_quaternion(start, pose))) {
         return ROB_ZERO_QUATERNION_START;
+    }
+    rob_displace(pose, still);
+";
+
+const FORWARD_START_JOINTS: &str = "    const double still[ROB_DOF] = { 0.0 };
+    double pose[ROB_POSE];
+    for (int i = 0; i < ROB_POSE; i++) {
+        pose[i] = start[i];
     }
     rob_displace(pose, still);
 ";
@@ -220,24 +234,38 @@ fn forward(model: &RobotModel, naming: &Naming) -> String {
         return format!("{head}{checks}{}", text(&[FORWARD_OF_A_TREE]));
     }
     let independent = model.mechanism.independent_coordinates();
+    let eliminate = |count: &str| ELIMINATE.replace("ROB_COUNT", count);
     let (displace, start) = match (has_quaternion(model), &independent) {
-        (_, Some(_)) => (DISPLACE_PARASITIC, FORWARD_START_PARASITIC),
-        (true, None) => (DISPLACE_QUATERNION, FORWARD_START_QUATERNION),
-        (false, None) => (DISPLACE, FORWARD_START),
+        (true, Some(_)) => (
+            [
+                DISPLACE_FREELY,
+                &eliminate("ROB_BLOCKED"),
+                DISPLACE_PARASITIC,
+            ]
+            .concat(),
+            FORWARD_START_PARASITIC,
+        ),
+        (false, Some(_)) => (
+            [&eliminate("ROB_DEPENDENT"), DISPLACE_JOINTS].concat(),
+            FORWARD_START_JOINTS,
+        ),
+        (true, None) => (DISPLACE_QUATERNION.to_owned(), FORWARD_START_QUATERNION),
+        (false, None) => (DISPLACE.to_owned(), FORWARD_START),
     };
     let found = match closed_form(model) {
         ClosedForm::None => FORWARD,
         ClosedForm::Alone => FORWARD_BY_RULE,
         ClosedForm::Start => FORWARD_FROM_RULE,
     };
-    let tables = independent.map_or_else(String::new, |own| coordinates(&own));
+    let count = model.mechanism.velocity_len();
+    let tables = independent.map_or_else(String::new, |own| coordinates(count, &own));
     let (fit, steps) = fitting(model);
     let turn = if has_quaternion(model) {
         [TURN, "\n"].concat()
     } else {
         String::new()
     };
-    let displace = [&tables, &turn, displace].concat();
+    let displace = [tables.as_str(), &turn, &displace].concat();
     let helpers = text(&[&displace, "\n", GAUSS_NEWTON, "\n", &steps, "\n"]);
     let found = found.replace("rob_FIT", fit);
     let body = text(&[start, &found, FORWARD_END]);
@@ -257,15 +285,14 @@ fn fitting(model: &RobotModel) -> (&'static str, String) {
     }
 }
 
-/// Tables of the independent and dependent ones of six coordinates of a platform with parasitic
-/// motion.
-fn coordinates(independent: &[usize]) -> String {
+/// Tables of the independent and dependent ones of the `count` coordinates of a pose.
+fn coordinates(count: usize, independent: &[usize]) -> String {
     let table = |name: &str, of: Vec<usize>| {
         let elements: Vec<String> = of.iter().map(ToString::to_string).collect();
         let (count, elements) = (elements.len(), elements.join(", "));
         format!("static const int rob_{name}[{count}] = {{ {elements} }};\n")
     };
-    let others = (0..6).filter(|at| !independent.contains(at)).collect();
+    let others = (0..count).filter(|at| !independent.contains(at)).collect();
     table("independent", independent.to_vec()) + &table("dependent", others) + "\n"
 }
 

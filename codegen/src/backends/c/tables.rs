@@ -41,6 +41,10 @@ pub fn sizes(model: &RobotModel, naming: &Naming) -> String {
             ("BLOCKED", 6 - dof, "directions that the legs block"),
         ]);
     }
+    if mechanism.has_dependent_joints() {
+        let count = mechanism.pose_len() - dof;
+        sizes.push(("DEPENDENT", count, "dependent joints in the pose"));
+    }
     if let Some(values) = &model.selection.values {
         sizes.push(("PARAMETER_VALUES", values.len(), "known parameters"));
     }

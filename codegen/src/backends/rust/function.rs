@@ -208,6 +208,8 @@ fn is_wide(model: &RobotModel, function: &CompiledFunction) -> bool {
             | Function::PoseStep
             | Function::BlockedError
             | Function::BlockedJacobian
+            | Function::PoseError
+            | Function::PoseErrorJacobian
     );
     function.lanes.is_none() && !is_of_steps && model.cost(function).once.operations() >= WIDE
 }

@@ -16,7 +16,7 @@ pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
     let standard = Literal::usize_unsuffixed(model.selection.standard.len());
     let base = Literal::usize_unsuffixed(model.selection.base.len());
     let way = match &mechanism.platform {
-        Some(_) if mechanism.is_parasitic() => Some(quote!(Self::displace)),
+        _ if mechanism.has_dependent_coordinates() => Some(quote!(Self::displace)),
         Some(own) if own.motion.has_quaternion() => {
             Some(quote!(::overact::forward::displace_quaternion))
         }
@@ -280,7 +280,13 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         ),
     };
     let doc = format!("{doc}{way}");
-    let displace = independent.map(|coordinates| self::displace(&coordinates, &kind));
+    let displace = independent.map(|coordinates| {
+        if model.mechanism.has_dependent_joints() {
+            displace_joints(&coordinates, &kind)
+        } else {
+            self::displace(&coordinates, &kind)
+        }
+    });
     quote! {
         #displace
 
@@ -312,6 +318,32 @@ fn displace(independent: &[usize], kind: &TokenStream) -> TokenStream {
                 ::overact::block::write(&Self::blocked_jacobian(pose)?, jacobian);
                 ::core::result::Result::Ok(())
             });
+        }
+    }
+}
+
+/// The displacement of a skeleton with dependent joints, as an associated function.
+fn displace_joints(independent: &[usize], kind: &TokenStream) -> TokenStream {
+    let independent = independent.iter().map(|&at| Literal::usize_unsuffixed(at));
+    quote! {
+        #[doc = " Displaces the independent joints of a pose by `step`; Newton's method finds the others so that the chains close. If it fails, other functions reject the pose."]
+        pub fn displace(pose: &mut [#kind], step: &[#kind]) {
+            ::overact::dependent_joints::displace(
+                pose,
+                step,
+                &[#(#independent),*],
+                ::overact::dependent_joints::Workspace {
+                    errors: &mut [0.0; Self::POSE - Self::DOF],
+                    jacobian: &mut [0.0; (Self::POSE - Self::DOF) * Self::POSE],
+                    square: &mut [0.0; (Self::POSE - Self::DOF) * (Self::POSE - Self::DOF)],
+                },
+                |pose, errors, jacobian| {
+                    let pose = ::overact::block::array(pose)?;
+                    ::overact::block::write(&Self::pose_error(pose)?, errors);
+                    ::overact::block::write(&Self::pose_error_jacobian(pose)?, jacobian);
+                    ::core::result::Result::Ok(())
+                },
+            );
         }
     }
 }

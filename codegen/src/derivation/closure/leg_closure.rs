@@ -199,6 +199,14 @@ impl<'a> LegClosure<'a> {
         along + course.turning(motion.point_velocity(self.arm), rate)
     }
 
+    /// Transforms the motions of the body at the leg's end to those of other coordinates.
+    pub(crate) fn project_directions(
+        &mut self,
+        project: &dyn Fn(&[SpatialMotion<'a>]) -> Vec<SpatialMotion<'a>>,
+    ) {
+        self.directions.project(project);
+    }
+
     /// ∂u_i/∂v for all u, r numbers each.
     #[must_use]
     pub(crate) fn reduced_jacobian(&self) -> Rows<'a> {

@@ -26,6 +26,7 @@ pub fn inventory(mechanism: &Mechanism, selection: &Selection) -> Vec<FunctionFo
         Condition::ClosedForm => closed,
         Condition::NumericJoints => joints == JointsBy::Newton,
         Condition::Parasitic => mechanism.is_parasitic(),
+        Condition::DependentJoints => mechanism.has_dependent_joints(),
         Condition::JointsByRule => !tree && joints == JointsBy::Rule,
         Condition::Masses => has_masses(selection),
         _ => true,

@@ -23,7 +23,7 @@ impl<'a> DerivationContext<'a, '_> {
             let leg = joints[joint].leg;
             let state = &self.robot.legs[leg];
             let closure = state.closure.as_ref().filter(|_| state.cable.is_none());
-            if mechanism.is_parasitic() {
+            if mechanism.has_dependent_coordinates() {
                 self.determinant(leg).unwrap_or_else(|| arena.one())
             } else {
                 closure.map_or_else(|| arena.one(), |c| c.determinant)
@@ -84,9 +84,9 @@ impl<'a> DerivationContext<'a, '_> {
         column(errors)
     }
 
-    /// D of a platform with parasitic motion.
+    /// D of a pose with dependent coordinates.
     pub(crate) fn platform_jacobian(&mut self) -> Rows<'a> {
-        let parasitic = self.robot.parasitic_motion.as_ref();
+        let parasitic = self.robot.dependent_coordinates();
         parasitic.map_or_else(Vec::new, |parasitic| {
             parasitic.platform_jacobian(self.robot.arena)
         })
@@ -100,7 +100,7 @@ impl<'a> DerivationContext<'a, '_> {
 
     /// A of A t = 0.
     pub(crate) fn blocked_jacobian(&mut self) -> Rows<'a> {
-        let parasitic = self.robot.parasitic_motion.as_ref();
+        let parasitic = self.robot.dependent_coordinates();
         parasitic.map_or_else(Vec::new, |parasitic| parasitic.matrix.clone())
     }
 

@@ -115,7 +115,13 @@ pub(crate) fn derive_with<'a, 's>(
     let FunctionForm { function, from } = form;
     // Forward kinematics yields a closed pose; functions that project onto the closures start from
     // other poses.
-    let brings_back = matches!(function, Function::BlockedError | Function::BlockedJacobian);
+    let brings_back = matches!(
+        function,
+        Function::BlockedError
+            | Function::BlockedJacobian
+            | Function::PoseError
+            | Function::PoseErrorJacobian
+    );
     let closes = matches!(function, Function::ClosureError | Function::LegsJacobian);
     let still = if brings_back || closes {
         &[][..]
@@ -190,9 +196,9 @@ impl<'a> DerivationContext<'a, '_> {
             Function::LegsJacobian => self.leg_matrices().0,
             Function::LegsPlatformJacobian => self.leg_matrices().1,
             Function::ClosureError => self.closure_error(),
-            Function::PlatformJacobian => self.platform_jacobian(),
-            Function::BlockedError => self.blocked_error(),
-            Function::BlockedJacobian => self.blocked_jacobian(),
+            Function::PlatformJacobian | Function::PoseJacobian => self.platform_jacobian(),
+            Function::BlockedError | Function::PoseError => self.blocked_error(),
+            Function::BlockedJacobian | Function::PoseErrorJacobian => self.blocked_jacobian(),
             Function::JointVelocities => {
                 let twist = self.twist();
                 let still = self.zeros();

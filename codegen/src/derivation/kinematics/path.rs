@@ -87,7 +87,10 @@ impl<'a> Path<'a> {
             rotation: seen(known, axes, Some(to))?,
             columns: Vec::new(),
         };
-        path.columns = (0..mechanism.dof()).map(|i| path.column(i)).collect();
+        // Per independent coordinate, or per joint in the pose until dependent joints are solved.
+        let mut rows = known.legs.iter().flat_map(|(_, _, rows)| rows.first());
+        let width = rows.next().map_or(mechanism.dof(), Vec::len);
+        path.columns = (0..width).map(|i| path.column(i)).collect();
         path.origin = path.steps.iter().fold(path.origin, |sum, step| {
             if step.is_forward {
                 sum + step.link

@@ -46,6 +46,16 @@ impl<'a> Directions<'a> {
         }
     }
 
+    /// Transforms the motions of the end body of a path to those of other coordinates.
+    pub(crate) fn project(
+        &mut self,
+        project: &dyn Fn(&[SpatialMotion<'a>]) -> Vec<SpatialMotion<'a>>,
+    ) {
+        if let Self::Joints(path) = self {
+            path.columns = project(&path.columns);
+        }
+    }
+
     /// Velocity of the point at `arm` and angular velocity, per independent rate.
     pub(crate) fn columns(&self, arena: &'a Arena, arm: Vector3<'a>) -> Vec<SpatialMotion<'a>> {
         let (unit, zero) = (
@@ -153,6 +163,14 @@ impl<'a> PlatformPose<'a> {
             rotation: path.rotation,
             directions: Directions::Joints(Box::new(path)),
         }
+    }
+
+    /// Transforms the motions of the end body of a path to those of other coordinates.
+    pub(crate) fn project_directions(
+        &mut self,
+        project: &dyn Fn(&[SpatialMotion<'a>]) -> Vec<SpatialMotion<'a>>,
+    ) {
+        self.directions.project(project);
     }
 
     /// Directions in which the independent coordinates move the platform.

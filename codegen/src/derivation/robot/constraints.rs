@@ -1,10 +1,13 @@
-//! Constraints of the legs on a platform with parasitic motion, and the resulting motion.
+//! Constraints of the legs on a platform with parasitic motion or on a skeleton, and the resulting
+//! motion.
 //!
 //! The platform is derived as a free body, and every leg is closed on it as on any other platform.
 //! A leg with more shared components than joints has remaining rows. Each is a wrench (a, n) at its
 //! end that does no work on the joints, a · Ṗ + n · ω = 0: a row of A t = 0. Its derivative does
 //! not require that of A. With the bias accelerations b, β of the leg's end at u̇ = 0 it is
 //! a · (P̈ - b) + n · (ω̇ - β) = 0, which gives the dependent components of ṫ.
+//!
+//! A skeleton with dependent joints is derived in the same way, with the rates of its joints as t.
 
 use super::Robot;
 use crate::cas::{Expr, Number, Ratio, Vector3};
@@ -18,13 +21,13 @@ use crate::derivation::kinematics::frames::LegFrames;
 use crate::derivation::kinematics::platform::PlatformPose;
 use crate::derivation::kinematics::spatial::SpatialMotion;
 use crate::derivation::linear_algebra::linear::apply;
-use crate::derivation::names::coordinate_label;
+use crate::derivation::names::{Accelerations, coordinate_label};
 use crate::mechanism::numeric::best_conditioned;
 use crate::mechanism::{End, Leg, Motion, TwistCoordinate};
 use nalgebra::DMatrix;
 
 impl<'a> Robot<'a> {
-    /// Derives the velocity of a platform with parasitic motion from the independent coordinates.
+    /// Derives the velocity of a pose with dependent coordinates from the independent ones.
     ///
     /// Uses the rows that best determine the dependent components at home.
     ///
@@ -36,7 +39,8 @@ impl<'a> Robot<'a> {
         let Some(independent) = self.mechanism.independent_coordinates() else {
             return Ok(None);
         };
-        let dependent = dependent_components(&independent);
+        let count = self.mechanism.velocity_len();
+        let dependent = dependent_components(count, &independent);
         let all = self.blocked_rows();
         let at_home = DMatrix::from_fn(all.len(), dependent.len(), |row, column| {
             self.at_home(all[row].entries[dependent[column]])
@@ -44,7 +48,7 @@ impl<'a> Robot<'a> {
         let chosen = best_conditioned(&at_home).into_iter();
         let rows = chosen.map(|row| all[row].clone()).collect();
         let home = |value: Expr<'a>| self.at_home(value);
-        let parasitic = ParasiticMotion::new(independent, rows, &home)
+        let parasitic = ParasiticMotion::new(count, independent, rows, &home)
             .ok_or_else(|| DerivationError::SingularHome { leg: String::new() })?;
         self.guard_coordinates(&parasitic.solved.determinants);
         Ok(Some(parasitic))
@@ -132,11 +136,62 @@ impl<'a> Robot<'a> {
         (velocity, parasitic.together(acceleration, &others))
     }
 
+    /// Rates and accelerations of the joints in the pose of a skeleton.
+    ///
+    /// With dependent joints, the chains up to the last blocked direction move once at zero
+    /// accelerations of these joints: this gives the bias of each blocked direction.
+    pub(crate) fn skeleton_motion(
+        &self,
+        twist: &[Expr<'a>],
+        acceleration: &[Expr<'a>],
+    ) -> (Vec<Expr<'a>>, Vec<Expr<'a>>) {
+        let Some(dependent) = &self.dependent_joints else {
+            return (twist.to_vec(), acceleration.to_vec());
+        };
+        let arena = self.arena;
+        let velocity = dependent.velocity(twist);
+        let mut missing = vec![arena.zero(); dependent.rows.len()];
+        let last = dependent.rows.iter().map(|row| row.leg).max();
+        let (mut u, mut u_dot) = (Vec::new(), Vec::new());
+        let legs = self.mechanism.legs.iter().zip(&self.legs).enumerate();
+        for (index, (leg, state)) in legs.take(last.map_or(0, |last| last + 1)) {
+            let (Some(closure), Some(end)) = (&state.closure, &state.platform) else {
+                let own = velocity[self.mechanism.coordinate_range(index)].to_vec();
+                u_dot.extend(vec![arena.zero(); own.len()]);
+                u.extend(own);
+                continue;
+            };
+            arena.enter(&leg.name);
+            let end = end.motion(&u, &u_dot);
+            let own = self.rates_of_leg(state, closure, twist, &end);
+            let bias = end_bias(arena, leg, &state.frames, &state.rates, &own);
+            for (missing, row) in missing.iter_mut().zip(&dependent.rows) {
+                if row.leg == index {
+                    *missing = -closure.blocked_acceleration(arena, row.index, &end, &bias);
+                }
+            }
+            let names = Accelerations::new(&[]).labels(leg, "still_a_on_f");
+            u_dot.extend(closure.accelerations(arena, &end, &bias, &names));
+            u.extend(own);
+        }
+        arena.enter("");
+        let own = apply(&dependent.follow, acceleration);
+        let bias = dependent.solved.solve(&missing);
+        let others: Vec<Expr<'a>> = own.iter().zip(&bias).map(|(a, b)| *a + *b).collect();
+        (velocity, dependent.together(acceleration, &others))
+    }
+
+    /// The relation of dependent coordinates of the pose to the independent ones, if there are any.
+    pub(crate) fn dependent_coordinates(&self) -> Option<&ParasiticMotion<'a>> {
+        let of_platform = self.parasitic_motion.as_ref();
+        of_platform.or(self.dependent_joints.as_ref())
+    }
+
     /// Violation of the legs' constraints by the pose: for each row of A, with the leg.
     pub(crate) fn blocked_errors(&self) -> Vec<(Expr<'a>, usize)> {
         let rows = self
-            .parasitic_motion
-            .iter()
+            .dependent_coordinates()
+            .into_iter()
             .flat_map(|parasitic| &parasitic.rows);
         let errors = rows.filter_map(|row| {
             let leg = row.leg;

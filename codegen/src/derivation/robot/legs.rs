@@ -234,7 +234,7 @@ impl<'a> Robot<'a> {
         let (arena, mechanism) = (self.arena, self.mechanism);
         let leg = &mechanism.legs[index];
         let home = |e: Expr<'a>| self.at_home(e);
-        let rows = if mechanism.is_parasitic() {
+        let rows = if mechanism.has_dependent_coordinates() {
             split_rows(arena, leg, frames, rates, &home)
         } else {
             ClosureRows {

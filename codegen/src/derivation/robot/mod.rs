@@ -19,6 +19,7 @@ use crate::derivation::guard::Guard;
 use crate::derivation::kinematics::configuration::Configuration;
 use crate::derivation::kinematics::frames::LegFrames;
 use crate::derivation::kinematics::platform::{PlatformMotion, PlatformPose};
+use crate::derivation::kinematics::spatial::SpatialMotion;
 use crate::derivation::linear_algebra::elimination::Rows;
 use crate::derivation::linear_algebra::linear::apply;
 use crate::derivation::motion_input::MotionInput;
@@ -46,6 +47,9 @@ pub struct Robot<'a> {
     pub(crate) free: Vec<TwistCoordinate>,
     /// Relation of these to the independent ones, for a platform with parasitic motion.
     pub(crate) parasitic_motion: Option<ParasiticMotion<'a>>,
+    /// Relation of the rates of all joints in the pose to the independent ones, for a skeleton with
+    /// dependent joints.
+    pub(crate) dependent_joints: Option<ParasiticMotion<'a>>,
     /// The legs.
     pub legs: Vec<LegState<'a>>,
     /// See [`Formulation::at_end`].
@@ -104,6 +108,7 @@ impl<'a> Robot<'a> {
                 .unwrap_or_default(),
             free: Self::free_coordinates(motion),
             parasitic_motion: None,
+            dependent_joints: None,
             legs: Vec::new(),
             at_end: formulation.at_end,
             own_axes: formulation.own_axes,
@@ -116,8 +121,12 @@ impl<'a> Robot<'a> {
         for leg in 0..mechanism.legs.len() {
             robot.derive_leg(leg, formulation)?;
         }
-        robot.parasitic_motion = robot.derive_parasitic_motion()?;
-        if robot.parasitic_motion.is_some() {
+        let dependent = robot.derive_parasitic_motion()?;
+        if mechanism.has_dependent_joints() {
+            robot.dependent_joints = dependent;
+            robot.follow_independent_joints();
+        } else if dependent.is_some() {
+            robot.parasitic_motion = dependent;
             robot.follow_independent();
         }
         Ok(robot)
@@ -144,6 +153,28 @@ impl<'a> Robot<'a> {
         self.arena.enter("");
     }
 
+    /// Transforms quantities of all legs per joint in the pose to those per independent joint: their
+    /// rows, and the motions of the bodies at their ends.
+    fn follow_independent_joints(&mut self) {
+        let Some(dependent) = &self.dependent_joints else {
+            return;
+        };
+        for (leg, state) in self.mechanism.legs.iter().zip(&mut self.legs) {
+            self.arena.enter(&leg.name);
+            for row in &mut state.rows {
+                *row = dependent.on_independent(row);
+            }
+            let project = |motions: &[SpatialMotion<'a>]| dependent.motions(motions);
+            if let Some(closure) = &mut state.closure {
+                closure.project_directions(&project);
+            }
+            if let Some(end) = &mut state.platform {
+                end.project_directions(&project);
+            }
+        }
+        self.arena.enter("");
+    }
+
     /// The frames of a leg in the base's axes.
     #[must_use]
     pub(crate) fn base_frames(&self, index: usize) -> Option<LegFrames<'a>> {
@@ -152,11 +183,11 @@ impl<'a> Robot<'a> {
         LegFrames::new(self.arena, leg, first_joint, &self.configuration, 0, None)
     }
 
-    /// Rates of joints that are independent coordinates, per independent coordinate.
+    /// Rates of joints that are in the pose, per joint in the pose.
     pub(crate) fn identity_rows(&self, own: std::ops::Range<usize>) -> Rows<'a> {
-        let dof = self.mechanism.dof();
+        let count = self.mechanism.pose_len();
         let entry = |i: usize, j: usize| self.arena.integer(i64::from(i == j));
-        own.map(|i| (0..dof).map(|j| entry(i, j)).collect())
+        own.map(|i| (0..count).map(|j| entry(i, j)).collect())
             .collect()
     }
 
@@ -179,6 +210,7 @@ impl<'a> Robot<'a> {
             let (velocity, acceleration) = self.free_motion(twist, acceleration);
             p.motion(&velocity, &acceleration)
         });
+        let (in_pose, growth) = self.skeleton_motion(twist, acceleration);
         let gravity = Vector3::constant(self.arena, self.mechanism.gravity);
         let accelerations = Accelerations::new(acceleration);
         let platform_body = |mount: &Mount<'a>| {
@@ -221,8 +253,8 @@ impl<'a> Robot<'a> {
                 _ => {
                     let range = self.mechanism.coordinate_range(motion.u.len());
                     LegRates {
-                        u: twist[range.clone()].to_vec(),
-                        u_dot: acceleration[range].to_vec(),
+                        u: in_pose[range.clone()].to_vec(),
+                        u_dot: growth[range].to_vec(),
                     }
                 }
             };

@@ -3,9 +3,11 @@
 //! `actuators` has the errors of the robot's actuators; this file has those of legs.
 
 mod actuators;
+mod dependent;
 mod motions;
 
 pub(super) use actuators::{independent, not_held, too_few_actuators, underactuated};
+pub(super) use dependent::dependent;
 
 use super::cable::CableProblem;
 use super::home::HomeError;
@@ -104,7 +106,7 @@ pub(super) fn defect(leg: &overact_description::Leg, defect: &Defect) -> Diagnos
         .label(format!("its joints allow its end {motions} of the {needed} motions that {carrier} has there"))
         .help(match leg.end_body {
             None => "add a passive joint, choose a platform motion with fewer coordinates, or an end with fewer constraints (`type`, `along`)",
-            Some(_) => "add a passive joint, or choose an end that leaves more free (`type`, `along`)",
+            Some(_) => "add a passive joint, or choose an end that leaves more free (`type`, `along`); if the chain determines joints of the skeleton, mark these with `dependent = true`",
         }),
         Defect::Loose { joints, motions } => Diagnostic::new(Code::USELESS_JOINT,
             format!("{shape} can move while {carrier} stands still"),

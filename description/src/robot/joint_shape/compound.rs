@@ -42,6 +42,7 @@ pub(crate) fn split<'c, 't>(
             steps: [const { None }; 6],
             turned: axis.2,
             actuated: false,
+            dependent: None,
             parameters: Vec::new(),
             spring: None,
             known: None,
@@ -73,6 +74,7 @@ pub(crate) fn split<'c, 't>(
 fn turned<'c, 't>(slide: &mut JointShape<'c, 't>, turn: &mut JointShape<'c, 't>) {
     turn.steps[4] = slide.steps[4].take();
     turn.actuated = std::mem::take(&mut slide.actuated);
+    turn.dependent = slide.dependent.take();
     turn.spring = slide.spring.take();
     turn.known = slide.known.take();
     turn.stribeck = slide.stribeck.take();

@@ -19,6 +19,8 @@ pub(crate) struct JointShape<'c, 't> {
     /// Whether γ and α are right angles instead: for an inner axis of a joint with several axes.
     pub(crate) turned: bool,
     pub(crate) actuated: bool,
+    /// `dependent = true`: the chains determine the joint.
+    pub(crate) dependent: Option<Item<'c, 't>>,
     pub(crate) parameters: Vec<StandardParameter>,
     pub(crate) spring: Option<Item<'c, 't>>,
     pub(crate) known: Option<Item<'c, 't>>,

@@ -122,6 +122,7 @@ impl Reader<'_, '_, '_> {
             r,
             variable,
             actuated: joint.actuated,
+            dependent: joint.dependent.as_ref().map(|item| item.span.clone()),
             parameters: joint.parameters.clone(),
             home: Number::ZERO,
             motor: None,

@@ -3,6 +3,7 @@
 pub(crate) mod cable_robot;
 pub(crate) mod chain;
 pub(crate) mod coupled_motor;
+pub(crate) mod dependent;
 pub(crate) mod joint;
 
 use crate::diagnostic::{Code, Diagnostic, did_you_mean};

@@ -293,7 +293,7 @@ pub(crate) fn keep_rows<'a>(
     configuration: &Configuration<'a>,
     axes: &[Orientation],
 ) -> bool {
-    let rows = if mechanism.is_parasitic() {
+    let rows = if mechanism.has_dependent_coordinates() {
         // The axes themselves decide which of the shared components determine the joints.
         mechanism.legs[leg].shared_components()
     } else {
