@@ -63,12 +63,14 @@ struct Schedule<'d> {
 
 impl<'d> Schedule<'d> {
     fn new(dag: &'d Dag, inputs: &'d [Array]) -> Self {
+        let entries = dag.entries().iter().map(|entry| entry.node());
+        let guards = dag.guards().iter().map(|guard| guard.value.node());
         let groups = dag.groups().iter().enumerate();
         let members = groups.flat_map(|(group, nodes)| nodes.iter().map(move |&n| (n, group)));
         Self {
             dag,
             inputs,
-            needed: dag.needed(dag.entries().iter().map(|entry| entry.node())),
+            needed: dag.needed(entries.chain(guards)),
             steps: Vec::new(),
             done: vec![None; dag.len()],
             negatives: QuickMap::default(),

@@ -72,6 +72,7 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     keep_actuators(description, &mut mechanism)?;
     check_held(description, &mechanism)?;
     mechanism.still = still_coordinates(&mechanism);
+    mechanism.blocking = dependent::blocking(&mechanism);
     Ok(mechanism)
 }
 
@@ -199,6 +200,7 @@ pub(super) fn plain(description: &Description) -> Mechanism {
         base_columns: base_columns(description),
         kept_actuators: (description.identification.kept_actuators.clone()).unwrap_or_default(),
         still: Vec::new(),
+        blocking: Vec::new(),
     };
     mechanism.motors = motors(description, &mechanism);
     mechanism

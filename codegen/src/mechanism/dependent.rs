@@ -8,8 +8,9 @@
 
 use super::check::WEAK;
 use super::home::{Home, REGULAR, condition, lenient_limit};
+use super::mobility::stacked;
 use super::numeric::best_conditioned;
-use super::singular_values::SingularValues;
+use super::singular_values::{SingularValues, rank};
 use super::{BodyIndex, JointKind, Mechanism};
 use nalgebra::{DMatrix, DVector, Vector3};
 
@@ -69,6 +70,20 @@ fn independent_rows(mechanism: &Mechanism) -> Vec<usize> {
     places.map(|place| of_pose[place]).collect()
 }
 
+/// Chains that hold their ends in more directions than they have joints, at home.
+pub(super) fn blocking(mechanism: &Mechanism) -> Vec<usize> {
+    if !mechanism.has_dependent_joints() {
+        return Vec::new();
+    }
+    let size = mechanism.length_scale();
+    let blocks = |index: &usize| {
+        let home = &mechanism.home;
+        let rows = closure(mechanism, *index, &home.pose, &home.joints, size);
+        rows.is_some_and(|rows| rank(&rows, COUNTED) > mechanism.legs[*index].independent().count())
+    };
+    (0..mechanism.legs.len()).filter(blocks).collect()
+}
+
 /// Rates of all joints of the allowed motions, as columns.
 fn allowed(mechanism: &Mechanism, pose: &[f64], joints: &[f64]) -> Option<DMatrix<f64>> {
     let size = mechanism.length_scale();
@@ -101,37 +116,44 @@ fn closures(
     joints: &[f64],
     size: f64,
 ) -> Option<DMatrix<f64>> {
-    let width = mechanism.joints().len();
-    let mut rows = Vec::new();
-    for (index, leg) in mechanism.legs.iter().enumerate() {
-        let Some(target) = mechanism.target(index, pose, joints) else {
-            continue;
-        };
-        let ground = mechanism.ground_of(index, pose, joints);
-        let reached = mechanism.frames_of(index, pose, joints);
-        let last = BodyIndex {
-            leg: index,
-            joint: leg.joints.len().checked_sub(1)?,
-        };
-        let own = reached.last()?.translation.vector;
-        let other = (ground * target).translation.vector;
-        let mut velocities = on_body(mechanism, Some(last), own, pose, joints)
-            - on_body(mechanism, leg.end_body, other, pose, joints);
-        let into = ground.rotation.inverse();
-        for mut column in velocities.column_iter_mut() {
-            for part in [0, 3] {
-                let turned = into * Vector3::new(column[part], column[part + 1], column[part + 2]);
-                let unit = if part == 0 { size } else { 1.0 };
-                column.rows_mut(part, 3).copy_from(&(turned / unit));
-            }
+    let mut all = DMatrix::zeros(0, mechanism.joints().len());
+    for index in 0..mechanism.legs.len() {
+        if mechanism.legs[index].end.is_some() {
+            all = stacked(&all, &closure(mechanism, index, pose, joints, size)?);
         }
-        let shared = leg.shared_components().into_iter();
-        rows.extend(shared.map(|row| velocities.row(row).into_owned()));
     }
-    if rows.is_empty() {
-        return Some(DMatrix::zeros(0, width));
+    Some(all)
+}
+
+/// The rows of Φ of a chain; `None` for other legs.
+fn closure(
+    mechanism: &Mechanism,
+    index: usize,
+    pose: &[f64],
+    joints: &[f64],
+    size: f64,
+) -> Option<DMatrix<f64>> {
+    let leg = &mechanism.legs[index];
+    let target = mechanism.target(index, pose, joints)?;
+    let ground = mechanism.ground_of(index, pose, joints);
+    let reached = mechanism.frames_of(index, pose, joints);
+    let last = BodyIndex {
+        leg: index,
+        joint: leg.joints.len().checked_sub(1)?,
+    };
+    let own = reached.last()?.translation.vector;
+    let other = (ground * target).translation.vector;
+    let mut velocities = on_body(mechanism, Some(last), own, pose, joints)
+        - on_body(mechanism, leg.end_body, other, pose, joints);
+    let into = ground.rotation.inverse();
+    for mut column in velocities.column_iter_mut() {
+        for part in [0, 3] {
+            let turned = into * Vector3::new(column[part], column[part + 1], column[part + 2]);
+            let unit = if part == 0 { size } else { 1.0 };
+            column.rows_mut(part, 3).copy_from(&(turned / unit));
+        }
     }
-    Some(DMatrix::from_rows(&rows))
+    Some(velocities.select_rows(&leg.shared_components()))
 }
 
 /// Velocity of a point of a body and its angular velocity, per rate of all joints with the loops

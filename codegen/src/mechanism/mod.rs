@@ -250,6 +250,8 @@ pub struct Mechanism {
     pub base_columns: BaseColumns,
     /// Pose coordinates of a platform with parasitic motion that the closures keep at zero.
     pub still: Vec<usize>,
+    /// Chains with too few joints, which block directions of a skeleton with dependent joints.
+    pub blocking: Vec<usize>,
 }
 
 /// A joint of the robot.

@@ -218,7 +218,8 @@ impl<'a> Dynamics<'a> {
     pub fn partition(&self, kept: &[usize], loads: &DMatrix<f64>) -> Result<Partition, Error> {
         let actuators = self.jacobians.transmission.nrows();
         let projected: Vec<usize> = (0..actuators).filter(|at| !kept.contains(at)).collect();
-        if matches!(self.mechanism.motion, Motion::Parasitic(_)) {
+        let is_parasitic = matches!(self.mechanism.motion, Motion::Parasitic(_));
+        if is_parasitic || self.mechanism.has_dependent_joints() {
             return self.partition_with_parasitic_motion(kept, projected, loads);
         }
         let matrix = self.partition_matrix(&projected);

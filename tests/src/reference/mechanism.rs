@@ -58,6 +58,8 @@ pub struct Joint {
     pub terms: Vec<(usize, f64)>,
     /// Whether a motor drives the joint.
     pub actuated: bool,
+    /// Whether the chains determine the joint, although it is one of the pose.
+    pub is_dependent: bool,
     /// Spring of the joint, a function of its position.
     pub spring: Option<Spring>,
     /// Known torque as a function of its position.
@@ -136,6 +138,7 @@ impl Joint {
             r: 0.0,
             terms,
             actuated: false,
+            is_dependent: false,
             spring: None,
             known: None,
             stribeck: None,
@@ -411,9 +414,29 @@ impl Mechanism {
         }
     }
 
-    /// Independent variables of a robot with loops between bodies: those of legs with a free end.
+    /// Independent variables of a robot with loops between bodies: those of the pose that no chain
+    /// determines.
     #[must_use]
     pub fn independent(&self) -> Vec<usize> {
+        let variables = self.variables();
+        let is_dependent = |at: &usize| {
+            let (leg, joint) = variables[*at];
+            self.legs[leg].joints[joint].is_dependent
+        };
+        let own = self.in_pose().into_iter();
+        own.filter(|at| !is_dependent(at)).collect()
+    }
+
+    /// Whether the pose of a robot with loops between bodies has joints that the chains determine.
+    #[must_use]
+    pub fn has_dependent_joints(&self) -> bool {
+        let mut all = self.legs.iter().flat_map(|leg| &leg.joints);
+        all.any(|joint| joint.is_dependent)
+    }
+
+    /// Variables in the pose of a robot with loops between bodies: those of legs with a free end.
+    #[must_use]
+    pub fn in_pose(&self) -> Vec<usize> {
         let free = self.legs.iter().zip(self.leg_ranges());
         free.filter(|(leg, _)| leg.end == End::Free)
             .flat_map(|(_, range)| range)

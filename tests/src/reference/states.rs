@@ -5,8 +5,8 @@
 //! closure is badly conditioned: comparisons there would measure the conditioning, not the model.
 
 use super::Error;
-use super::closure::State;
 use super::closure::parasitic_motion;
+use super::closure::{State, displaced};
 use super::mechanism::Mechanism;
 use super::motion::Motion;
 use super::parameters::{
@@ -43,15 +43,19 @@ pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Result<V
         let displacement = random_vector(&mut generator, &scales);
         let twist = random_vector(&mut generator, &vec![MAX_SPEED; dof]);
         let acceleration = random_vector(&mut generator, &vec![MAX_ACCELERATION; dof]);
-        let solved = if matches!(mechanism.motion, Motion::Parasitic(_)) {
-            let start = parasitic_motion::start(mechanism);
-            parasitic_motion::displaced(mechanism, &mechanism.home, &start, &displacement).and_then(
-                |(pose, q)| State::with_joints(mechanism, &pose, &q, &twist, &acceleration),
-            )
-        } else {
-            let pose = mechanism.motion.displace(&mechanism.home, &displacement);
-            State::solve(mechanism, &pose, &twist, &acceleration)
-        };
+        let start = parasitic_motion::start(mechanism);
+        let solved =
+            displaced(mechanism, &mechanism.home, &start, &displacement).and_then(|found| {
+                match found {
+                    Some((pose, q)) => {
+                        State::with_joints(mechanism, &pose, &q, &twist, &acceleration)
+                    }
+                    None => {
+                        let pose = mechanism.motion.displace(&mechanism.home, &displacement);
+                        State::solve(mechanism, &pose, &twist, &acceleration)
+                    }
+                }
+            });
         if let Ok(state) = solved
             && is_regular(mechanism, &state)
         {

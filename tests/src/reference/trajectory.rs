@@ -4,10 +4,8 @@
 //! rotation vector, exact up to the second derivative at t = 0, which is sufficient.
 
 use super::Error;
-use super::closure::State;
-use super::closure::parasitic_motion;
+use super::closure::{State, displaced};
 use super::mechanism::Mechanism;
-use super::motion::Motion;
 use nalgebra::DVector;
 
 /// Largest step of the finite differences, s.
@@ -29,9 +27,7 @@ pub fn step(state: &State) -> f64 {
 pub fn at(mechanism: &Mechanism, state: &State, t: f64) -> Result<State, Error> {
     let displacement = &state.twist * t + &state.acceleration * (0.5 * t * t);
     let twist = &state.twist + &state.acceleration * t;
-    if matches!(mechanism.motion, Motion::Parasitic(_)) {
-        let (pose, q) =
-            parasitic_motion::displaced(mechanism, &state.pose, &state.q, &displacement)?;
+    if let Some((pose, q)) = displaced(mechanism, &state.pose, &state.q, &displacement)? {
         return State::with_joints(mechanism, &pose, &q, &twist, &state.acceleration);
     }
     let pose = mechanism.motion.displace(&state.pose, &displacement);

@@ -52,7 +52,7 @@ pub fn of_functions(
         // multiples.
         let is_compared = !matches!(
             function.computes,
-            Function::ClosureError | Function::BlockedJacobian
+            Function::ClosureError | Function::BlockedJacobian | Function::PoseErrorJacobian
         );
         if is_compared {
             let at = usize::from(!function.name.contains("_base"));

@@ -165,6 +165,7 @@ fn joint(joint: &mechanism::Joint) -> Joint {
             .map(|(of, factor)| (*of, factor.value()))
             .collect(),
         actuated: joint.actuated,
+        is_dependent: joint.dependent,
         spring: joint.spring.clone().map(|spring| torque(spring.formula)),
         known: joint.known.clone().map(torque),
         load: joint.load.clone().map(|load| torque(load.formula)),

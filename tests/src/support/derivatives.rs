@@ -4,9 +4,9 @@
 //! two of them agree: loads and dry friction jump where a sign changes between the points.
 
 use super::{Failure, Sample};
-use crate::reference::closure::parasitic_motion;
+use crate::reference::closure;
 use crate::reference::dynamics::Dynamics;
-use crate::reference::{Mechanism, Motion, State};
+use crate::reference::{Mechanism, State};
 use nalgebra::{DMatrix, DVector};
 use overact::Function;
 
@@ -75,9 +75,7 @@ pub fn displaced(
     displacement: &DVector<f64>,
 ) -> Result<State, Failure> {
     let (twist, acceleration) = (&state.twist, &state.acceleration);
-    if matches!(mechanism.motion, Motion::Parasitic(_)) {
-        let (pose, q) =
-            parasitic_motion::displaced(mechanism, &state.pose, &state.q, displacement)?;
+    if let Some((pose, q)) = closure::displaced(mechanism, &state.pose, &state.q, displacement)? {
         return Ok(State::with_joints(
             mechanism,
             &pose,

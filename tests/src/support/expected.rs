@@ -393,6 +393,8 @@ fn kinematic(
         Function::PlatformJacobian => rates(mechanism, &state.pose, &state.q)?[1].clone(),
         // The pose is one of the robot's.
         Function::BlockedError => DMatrix::zeros(6 - mechanism.dof(), 1),
+        Function::PoseJacobian => jacobians.joints.select_rows(&mechanism.in_pose()),
+        Function::PoseError => DMatrix::zeros(state.pose.len() - mechanism.dof(), 1),
         Function::JointVelocities => vector(&state.qd),
         Function::JointAccelerations => vector(&state.qdd),
         Function::TwistFromActuators => vector(&sample.fitted.twist),

@@ -171,6 +171,7 @@ pub fn workspace(model: &RobotModel) -> Vec<f64> {
         };
         let joints = mechanism.joints();
         let own = mechanism.coordinate_joints().into_iter();
+        let own = own.filter(|&at| !mechanism.joint(joints[at]).dependent);
         return own.map(|at| reach(joints[at])).collect();
     };
     let reach = |c: &TwistCoordinate| match c {

@@ -6,6 +6,7 @@ pub mod all_functions;
 pub mod backend;
 pub mod comparison;
 pub mod conversion;
+pub mod dependent;
 pub mod derivatives;
 pub mod elements;
 pub mod expected;

@@ -1,6 +1,7 @@
 //! A state of a robot with all inputs of its functions, by argument name.
 
 use super::Failure;
+use crate::reference::closure::displaced;
 use crate::reference::linear::pseudo_inverse;
 use crate::reference::motors::transmission;
 use crate::reference::states::{MAX_CONDITION, random_parameters, random_states};
@@ -117,7 +118,10 @@ impl Sample {
             all_parameters,
             preload: random(n - r, 3.0).as_slice().to_vec(),
             missed: (actuators + random(n, 0.01)).as_slice().to_vec(),
-            start: mechanism.motion.displace(&state.pose, &shift),
+            start: match displaced(mechanism, &state.pose, &state.q, &shift)? {
+                Some((pose, _)) if mechanism.has_dependent_joints() => pose,
+                _ => mechanism.motion.displace(&state.pose, &shift),
+            },
             wrench: random(6, 10.0).as_slice().to_vec(),
             state,
         })

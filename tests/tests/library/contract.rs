@@ -76,6 +76,7 @@ fn is_offered(model: &RobotModel, function: Function) -> bool {
         Condition::Payload => platform.is_some_and(|p| p.payload.is_some()),
         Condition::NumericJoints => model.selection.joints == JointsBy::Newton,
         Condition::Parasitic => mechanism.is_parasitic(),
+        Condition::DependentJoints => mechanism.has_dependent_joints(),
         Condition::JointsByRule => !mechanism.is_tree() && model.selection.joints == JointsBy::Rule,
         // Only the generator knows whether there is a closed form.
         Condition::ClosedForm => model.served(function).is_some(),

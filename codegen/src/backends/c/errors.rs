@@ -41,7 +41,7 @@ fn kinds(model: &RobotModel) -> Vec<ErrorEntry> {
         name: name.to_owned(),
         text: text.to_owned(),
     };
-    let determine = "do not determine the others here";
+    let determine = "do not determine the platform's motion here";
     let mut kinds = vec![
         kind("OK", "no error"),
         kind("SINGULAR_ACTUATORS", &format!("the actuators {determine}")),
@@ -81,7 +81,7 @@ fn kinds(model: &RobotModel) -> Vec<ErrorEntry> {
     if model.mechanism.has_dependent_coordinates() {
         kinds.push(kind(
             "SINGULAR_COORDINATES",
-            "the independent coordinates do not determine the platform's motion here",
+            "the independent coordinates do not determine the others here",
         ));
         kinds.extend(
             legs.zip(leg_constants(model))

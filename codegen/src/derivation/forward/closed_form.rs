@@ -106,6 +106,7 @@ impl<'a> Work<'a> {
         let of_leg = |&leg: &usize| {
             let (arm, axes) = arm(leg)?;
             let task = Task {
+                blocks: false,
                 arena: self.arena,
                 leg: &self.mechanism.legs[leg],
                 first_joint: self.mechanism.leg_range(leg).start,

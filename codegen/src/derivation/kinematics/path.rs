@@ -297,7 +297,7 @@ pub(crate) fn observer_frames(
 /// some components of a velocity, if other axes would mix them with the rest.
 #[must_use]
 pub(crate) fn observer_frame_choices(mechanism: &Mechanism, leg: usize) -> Vec<usize> {
-    if mechanism.skeleton().is_none() {
+    if mechanism.skeleton().is_none() || mechanism.blocking.contains(&leg) {
         return vec![0];
     }
     let arena = Arena::new();

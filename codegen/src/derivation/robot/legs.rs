@@ -11,7 +11,7 @@ use crate::derivation::guard::{Guard, GuardKind};
 use crate::derivation::kinematics::centres::centres;
 use crate::derivation::kinematics::frames::LegFrames;
 use crate::derivation::kinematics::inverse_kinematics::{Task, solve_leg};
-use crate::derivation::kinematics::orientation::{ObserverFrame, Orientation};
+use crate::derivation::kinematics::orientation::{ObserverFrame, Orientation, blocking_frame};
 use crate::derivation::kinematics::path::{KnownMotion, Path, observer_frames, orientation};
 use crate::derivation::kinematics::platform::PlatformPose;
 use crate::derivation::kinematics::rates::Rates;
@@ -174,10 +174,9 @@ impl<'a> Robot<'a> {
                 observer,
             );
         }
-        let closure_frame = formulation
-            .closure_frames
-            .get(index)
-            .copied()
+        let chosen = formulation.closure_frames.get(index).copied();
+        let closure_frame = blocking_frame(self.mechanism, index)
+            .or(chosen)
             .unwrap_or_default();
         let frames = LegFrames::new(
             arena,
@@ -266,7 +265,7 @@ impl<'a> Robot<'a> {
             .get(index)
             .copied()
             .unwrap_or_default();
-        if observer_frame == 0 {
+        if observer_frame == 0 || self.mechanism.blocking.contains(&index) {
             return None;
         }
         let all = observer_frames(self.mechanism, &self.configuration, index)?;

@@ -7,7 +7,7 @@
 
 use super::State;
 use crate::reference::Error;
-use crate::reference::jacobians::{Jacobians, end_rows};
+use crate::reference::jacobians::{Jacobians, end_jacobian, end_rows, longest_rows};
 use crate::reference::kinematics::{
     BodyMotion, all_legs, end_components, end_from_leg, end_from_platform,
 };
@@ -137,7 +137,12 @@ pub fn jacobians(mechanism: &Mechanism, q: &DVector<f64>) -> Result<Jacobians, E
             let own = all.joints.rows(range.start, range.len()).into_owned();
             (DMatrix::identity(range.len(), range.len()), own)
         } else {
-            let own = all.ends.rows(first, count).select_rows(&end_rows(k, leg)?);
+            let rows = if mechanism.has_dependent_joints() {
+                longest_rows(&end_jacobian(leg, &leg.start))
+            } else {
+                end_rows(k, leg)?
+            };
+            let own = all.ends.rows(first, count).select_rows(&rows);
             let square = own.columns(range.start, range.len()).into_owned();
             let before = all.joints.rows(0, range.start);
             (square, -own.columns(0, range.start) * before)
@@ -197,7 +202,7 @@ pub fn positions(mechanism: &Mechanism, pose: &[f64]) -> Result<DVector<f64>, Er
     for step in 1..STEPS {
         let part = &path * (step as f64 / STEPS as f64);
         let between = mechanism.motion.displace(&mechanism.home, &part);
-        q = newton(mechanism, &between, &q, 1e-5).0;
+        q = newton(mechanism, &mechanism.in_pose(), &between, &q, 1e-5).0;
     }
     close(mechanism, pose, &q)
 }
@@ -212,7 +217,7 @@ pub fn close(
     pose: &[f64],
     near: &DVector<f64>,
 ) -> Result<DVector<f64>, Error> {
-    let (q, residual) = newton(mechanism, pose, near, EXACT);
+    let (q, residual) = newton(mechanism, &mechanism.in_pose(), pose, near, EXACT);
     if residual < LARGEST_GAP {
         Ok(q)
     } else {
@@ -220,16 +225,45 @@ pub fn close(
     }
 }
 
-/// Damped Newton's method on all cuts at once with the independent joints fixed.
+/// Pose and joints after a displacement of the independent joints, reached in steps.
+///
+/// # Errors
+///
+/// If a loop does not close.
+pub fn displaced(
+    mechanism: &Mechanism,
+    near: &DVector<f64>,
+    step: &DVector<f64>,
+) -> Result<(Vec<f64>, DVector<f64>), Error> {
+    let own = mechanism.independent();
+    let (mut q, mut residual) = (near.clone(), f64::INFINITY);
+    for part in 1..=STEPS {
+        let part = part as f64 / STEPS as f64;
+        let moved = own
+            .iter()
+            .zip(step)
+            .map(|(&at, step)| near[at] + part * step);
+        let moved: Vec<f64> = moved.collect();
+        (q, residual) = newton(mechanism, &own, &moved, &q, EXACT);
+    }
+    if residual < LARGEST_GAP {
+        let pose = mechanism.in_pose().into_iter().map(|at| q[at]);
+        Ok((pose.collect(), q))
+    } else {
+        Err(Error::NoConvergence { leg: 0, residual })
+    }
+}
+
+/// Damped Newton's method on all cuts at once with some joints at given positions.
 fn newton(
     mechanism: &Mechanism,
-    pose: &[f64],
+    own: &[usize],
+    positions: &[f64],
     near: &DVector<f64>,
     enough: f64,
 ) -> (DVector<f64>, f64) {
-    let own = mechanism.independent();
     let mut q = near.clone();
-    for (&at, &position) in own.iter().zip(pose) {
+    for (&at, &position) in own.iter().zip(positions) {
         q[at] = position;
     }
     let chains: Vec<usize> = (0..q.len()).filter(|at| !own.contains(at)).collect();

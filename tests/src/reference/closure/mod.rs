@@ -161,6 +161,26 @@ impl State {
     }
 }
 
+/// Pose and joints after a displacement of the independent coordinates, if the pose has others.
+///
+/// # Errors
+///
+/// If the loops do not close.
+pub fn displaced(
+    mechanism: &Mechanism,
+    pose: &[f64],
+    q: &DVector<f64>,
+    step: &DVector<f64>,
+) -> Result<Option<(Vec<f64>, DVector<f64>)>, Error> {
+    if matches!(mechanism.motion, Motion::Parasitic(_)) {
+        return parasitic_motion::displaced(mechanism, pose, q, step).map(Some);
+    }
+    if mechanism.has_dependent_joints() {
+        return chains::displaced(mechanism, q, step).map(Some);
+    }
+    Ok(None)
+}
+
 /// Joint positions at a pose, reached from the home pose in the legs' working mode (7).
 ///
 /// # Errors

@@ -9,7 +9,7 @@
 
 use super::{State, closure_residual};
 use crate::reference::Error;
-use crate::reference::jacobians::{Jacobians, attachment_jacobian, end_jacobian};
+use crate::reference::jacobians::{Jacobians, attachment_jacobian, end_jacobian, longest_rows};
 use crate::reference::kinematics::{
     BodyMotion, end_components, end_equations, end_from_leg, end_from_platform, leg_motion,
     platform_motion,
@@ -210,28 +210,6 @@ pub fn jacobians(
     }
     jacobians.reduce_motors();
     Ok(jacobians)
-}
-
-/// Chooses as many equations of a leg as it has joints, in order.
-///
-/// Each step takes the row that is longest after removing its components along the chosen rows; the
-/// first on ties. The choice is a convention.
-fn longest_rows(matrix: &DMatrix<f64>) -> Vec<usize> {
-    let mut left = matrix.clone();
-    let mut chosen: Vec<usize> = Vec::new();
-    for _ in 0..matrix.ncols() {
-        let lengths: Vec<f64> = left.row_iter().map(|row| row.norm()).collect();
-        let longest = lengths.iter().copied().fold(0.0, f64::max);
-        let found = lengths.iter().position(|l| *l > longest * (1.0 - 1e-8));
-        let Some(row) = found.filter(|row| !chosen.contains(row)) else {
-            break;
-        };
-        let direction = left.row(row).normalize();
-        left = &left - (&left * direction.transpose()) * direction;
-        chosen.push(row);
-    }
-    chosen.sort_unstable();
-    chosen
 }
 
 /// Pose after a displacement of the independent components, with joints that close the loops.

@@ -43,6 +43,9 @@ pub struct Task<'a, 'm> {
     pub leg: &'m Leg,
     /// Index of the leg's first joint in q_t.
     pub first_joint: usize,
+    /// Whether the leg blocks directions of a skeleton, so that a pose may be one that it does not
+    /// reach.
+    pub blocks: bool,
     /// The home configuration, which fixes the working mode.
     pub home: &'m Home,
     /// Target of the leg's end, in the base frame.
@@ -70,6 +73,7 @@ impl<'a, 'm> Task<'a, 'm> {
             arena,
             leg,
             first_joint: mechanism.leg_range(index).start,
+            blocks: mechanism.blocking.contains(&index),
             home: &mechanism.home,
             target: platform.origin + platform.arm(end.point()),
             axes,

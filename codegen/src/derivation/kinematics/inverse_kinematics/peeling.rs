@@ -180,6 +180,7 @@ fn take<'a>(
     let label = unknown_label(task, configuration, unknown);
     let named = |value: Expr<'a>, what: &str| value.named(&format!("{what}{label}"));
     let (value, reach) = match step {
+        Step::Pair(first, second) if task.blocks => (normalised(pair(first, second)), None),
         Step::Pair(first, second) => (pair(first, second), None),
         Step::Root(equation) => {
             let w = root_at_home(task, &equation, unknown)?;
@@ -264,6 +265,17 @@ fn pair<'a>(first: Linear<'a>, second: Linear<'a>) -> CosineSine<'a> {
     let cosine = (first.d * second.b - first.b * second.d) * reciprocal;
     let sine = (first.a * second.d - first.d * second.a) * reciprocal;
     CosineSine { cosine, sine }
+}
+
+/// Cosine and sine of the direction of a vector.
+///
+/// The pose of a leg that blocks directions determines them twice, and equally only if it is closed.
+fn normalised(CosineSine { cosine, sine }: CosineSine<'_>) -> CosineSine<'_> {
+    let reciprocal = (cosine * cosine + sine * sine).sqrt().reciprocal();
+    CosineSine {
+        cosine: cosine * reciprocal,
+        sine: sine * reciprocal,
+    }
 }
 
 /// Cosine and sine from one equation, with the sign of w at home; also returns the radicand, which

@@ -29,6 +29,7 @@ fn with_task<T>(angle: f64, look: impl FnOnce(&Arena, Task<'_, '_>, &Unknown) ->
     };
     let turn: Direction = arena.input_angle("joints", 0);
     let task = Task {
+        blocks: false,
         arena: &arena,
         leg: &mechanism.legs[0],
         first_joint: 0,

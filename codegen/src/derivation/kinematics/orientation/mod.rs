@@ -253,6 +253,19 @@ pub(crate) fn closure_frame_choices(mechanism: &Mechanism, leg: usize) -> Vec<us
         .map_or(vec![0], |axes| distinct(&axes, &arena, &configuration))
 }
 
+/// Index of the frame in whose axes the closure of a chain that blocks directions is written; `None`
+/// for other legs.
+///
+/// It is that of the last body: in its axes, a rod blocks the direction along it in every
+/// configuration.
+pub(crate) fn blocking_frame(mechanism: &Mechanism, leg: usize) -> Option<usize> {
+    let choices = mechanism
+        .blocking
+        .contains(&leg)
+        .then(|| closure_frame_choices(mechanism, leg));
+    choices?.last().copied()
+}
+
 /// Indices of axes that are not signed permutations of others, which cost the same.
 pub(crate) fn distinct<'a>(
     axes: &[Orientation],

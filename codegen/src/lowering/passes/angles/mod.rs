@@ -63,10 +63,18 @@ impl CosineSine {
     }
 }
 
-/// Indices of all angles whose sine or cosine the entries need, in the order of first use.
+/// Indices of all angles whose sine or cosine the entries need, in the order of first use; then
+/// those that only guards on the pose need.
 fn needed_turns(dag: &Dag) -> Vec<u32> {
     let mut seen = vec![false; dag.len()];
-    let mut stack: Vec<usize> = dag.entries().iter().rev().map(|e| e.node()).collect();
+    let of_guards = dag.guards().iter().map(|guard| guard.value.node());
+    let roots: Vec<usize> = dag
+        .entries()
+        .iter()
+        .map(|e| e.node())
+        .chain(of_guards)
+        .collect();
+    let mut stack: Vec<usize> = roots.into_iter().rev().collect();
     let mut turns = Vec::new();
     while let Some(node) = stack.pop() {
         if std::mem::replace(&mut seen[node], true) {
