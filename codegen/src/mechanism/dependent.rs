@@ -54,7 +54,11 @@ impl Mechanism {
     /// At a pose and joint positions that close the chains. `None` if the number of allowed motions
     /// is not that of the independent joints, or if these do not determine the others.
     pub(super) fn rates_of_joints(&self, pose: &[f64], joints: &[f64]) -> Option<DMatrix<f64>> {
-        let allowed = allowed(self, pose, joints)?;
+        let mut allowed = allowed(self, pose, joints)?;
+        let scale = scales(self, self.length_scale());
+        for (mut row, scale) in allowed.row_iter_mut().zip(&scale) {
+            row *= *scale;
+        }
         let own = allowed.select_rows(&independent_rows(self));
         if own.nrows() != own.ncols() {
             return None;
@@ -84,7 +88,8 @@ pub(super) fn blocking(mechanism: &Mechanism) -> Vec<usize> {
     (0..mechanism.legs.len()).filter(blocks).collect()
 }
 
-/// Rates of all joints of the allowed motions, as columns.
+/// Rates of all joints of the allowed motions, as orthonormal columns; those of slides in units of the
+/// robot's length.
 fn allowed(mechanism: &Mechanism, pose: &[f64], joints: &[f64]) -> Option<DMatrix<f64>> {
     let size = mechanism.length_scale();
     let scale = scales(mechanism, size);
@@ -92,11 +97,7 @@ fn allowed(mechanism: &Mechanism, pose: &[f64], joints: &[f64]) -> Option<DMatri
     for (mut column, scale) in closures.column_iter_mut().zip(&scale) {
         column *= *scale;
     }
-    let mut allowed = SingularValues::new(&closures)?.null_space(COUNTED);
-    for (mut row, scale) in allowed.row_iter_mut().zip(&scale) {
-        row *= *scale;
-    }
-    Some(allowed)
+    Some(SingularValues::new(&closures)?.null_space(COUNTED))
 }
 
 /// Units of all joints: rad, or the robot's length.
@@ -260,11 +261,12 @@ pub(super) fn closed(mechanism: &Mechanism, start: &Home, moving: Moving) -> Opt
 pub(super) struct Rated {
     /// Number of motions that the chains allow.
     pub(super) motions: usize,
-    /// Condition number of the independent joints' rows; infinite for a wrong number of them.
-    pub(super) condition: f64,
+    /// Largest ratio of the rates of all joints to those of the independent ones; infinite for a wrong
+    /// number of them.
+    pub(super) gain: f64,
     /// Places in the pose of joints that determine the others well.
     pub(super) best: Vec<usize>,
-    /// Their condition number.
+    /// Their gain.
     pub(super) least: f64,
 }
 
@@ -279,20 +281,21 @@ impl Rated {
         let is_square = own.nrows() == own.ncols();
         Some(Self {
             motions: allowed.ncols(),
-            condition: if is_square {
-                condition(&own)
-            } else {
-                f64::INFINITY
-            },
-            least: condition(&of_pose.select_rows(&best)),
+            gain: if is_square { gain(&own) } else { f64::INFINITY },
+            least: gain(&of_pose.select_rows(&best)),
             best,
         })
     }
 
     /// Whether the independent joints are as many as the allowed motions, and determine the others.
     pub(super) fn is_good(&self) -> bool {
-        self.condition < WEAK * self.least
+        self.gain < WEAK * self.least
     }
+}
+
+/// Largest ratio of the norm of an allowed motion to that of its rows.
+fn gain(rows: &DMatrix<f64>) -> f64 {
+    SingularValues::new(rows).map_or(f64::INFINITY, |found| found.condition() / found.largest())
 }
 
 /// A state at independent joints, tracked from home in small steps so that the working mode stays.
@@ -306,7 +309,7 @@ pub(super) fn follow(
     const PARTS: usize = 8;
     let home = &mechanism.home;
     let own = mechanism.independent_places();
-    let chosen = |allowed: &Rated| allowed.condition;
+    let chosen = |allowed: &Rated| allowed.gain;
     let limit = if is_lenient {
         (4.0 * chosen(&Rated::at_home(mechanism)?)).max(REGULAR)
     } else {

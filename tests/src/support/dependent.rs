@@ -142,16 +142,17 @@ pub fn spatial() -> String {
     let across = format!("gamma = \"90 deg\"\nalpha = \"90 deg\"\n{DEPENDENT}");
     let mut text = [
         "name = \"Dependent\"\ngravity = [1.0, -2.0, -9.0]\n".to_owned(),
-        joint("skeleton", "shoulder", MOTOR),
+        joint("skeleton", "turn", MOTOR),
+        joint("skeleton", "lift", &format!("alpha = \"90 deg\"\n{MOTOR}")),
         joint("skeleton", "yaw", &format!("d = 0.3\n{DEPENDENT}")),
         joint("skeleton", "pitch", &across),
         joint("skeleton", "roll", &across),
     ]
     .concat();
     let rods = [
-        ("a", "[0.45, 0.1, -0.25]", "[0.12, 0.02, 0.03]", "0.409 m"),
-        ("b", "[0.2, 0.35, -0.2]", "[-0.02, 0.13, -0.05]", "0.379 m"),
-        ("c", "[0.35, -0.3, -0.1]", "[0.03, -0.04, 0.14]", "0.533 m"),
+        ("a", "[0.45, 0.1, -0.35]", "[0.12, 0.02, 0.03]", "0.344 m"),
+        ("b", "[0.2, 0.35, -0.25]", "[-0.02, 0.13, -0.05]", "0.326 m"),
+        ("c", "[0.35, -0.3, -0.2]", "[0.03, -0.04, 0.14]", "0.428 m"),
     ];
     for (name, base, end, length) in rods {
         let own = rod(
@@ -167,11 +168,11 @@ pub fn spatial() -> String {
     text + &[
         place(
             "skeleton",
-            "shoulder = 0.3, yaw = 0.2, pitch = 0.25, roll = -0.15",
+            "turn = 0.3, lift = -0.2, yaw = 0.2, pitch = 0.25, roll = -0.15",
         ),
-        place("a", "pin = \"94 deg\", swing = \"67 deg\""),
-        place("b", "pin = \"-137 deg\", swing = \"30 deg\""),
-        place("c", "pin = \"19 deg\", swing = \"17 deg\""),
+        place("a", "pin = \"135 deg\", swing = \"57 deg\""),
+        place("b", "pin = \"-136 deg\", swing = \"26 deg\""),
+        place("c", "pin = \"16 deg\", swing = \"39 deg\""),
     ]
     .concat()
 }

@@ -6,6 +6,9 @@ use crate::mechanism::dependent::Rated;
 use overact_description::Description;
 use overact_description::diagnostic::{Code, Diagnostic};
 
+/// Ratio of rates above which it is rounding.
+const LARGEST: f64 = 1e9;
+
 /// Dependent joints that are of the wrong number, or that the chains do not determine.
 pub(in crate::mechanism) fn dependent(
     description: &Description,
@@ -46,16 +49,13 @@ pub(in crate::mechanism) fn dependent(
     }
     let message = "the chains do not determine the dependent joints at home";
     Diagnostic::new(Code::NOT_HELD, message, span)
-        .label(if found.condition.is_finite() {
-            format!(
-                "the condition number of the others is {:.1e}",
-                found.condition
-            )
+        .label(if found.gain < LARGEST {
+            format!("joints move {:.1e} times as fast as the others", found.gain)
         } else {
             "the others do not determine them".to_owned()
         })
         .help(format!(
-            "{advice}; the condition number is then {:.1}",
+            "{advice}: joints then move at most {:.1} times as fast as the others",
             found.least
         ))
 }
