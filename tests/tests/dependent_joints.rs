@@ -6,15 +6,18 @@
 use overact::Function;
 use overact_codegen::derivation::MotionInput;
 use overact_codegen::interpreter::{Failed, Rows};
-use overact_codegen::{Effort, Request, RobotModel, Source};
-use overact_tests::support::dependent::{branch, rigid, slider, spatial, stephenson};
-use overact_tests::support::{Failure, all_functions::against_reference, model_with};
+use overact_codegen::{Choice, Effort, Request, RobotModel, Source};
+use overact_tests::support::all_functions::{against_reference, of_functions};
+use overact_tests::support::dependent::{branch, equipped, rigid, slider, spatial, stephenson};
+use overact_tests::support::{Failure, model_with};
 use overact_tier::by_tiers;
 
 const TOLERANCE: f64 = 1e-9;
 /// Tolerance of functions of base parameters of the robot in space, whose regroupings are computed
 /// numerically.
 const OF_BASE: f64 = 1e-6;
+/// Tolerance of derivatives, which the reference computes by differences.
+const OF_DERIVATIVES: f64 = 1e-7;
 /// States of each robot in the default, full and nightly tier.
 const STATES: [usize; 3] = [3, 20, 60];
 
@@ -54,6 +57,32 @@ fn a_dependent_branch_on_a_chain_agrees() -> Result<(), Failure> {
 #[test]
 fn a_link_on_three_rods_in_space_agrees() -> Result<(), Failure> {
     compare(spatial(), OF_BASE)
+}
+
+#[test]
+fn springs_payload_frames_and_motors_agree() -> Result<(), Failure> {
+    compare(equipped(), TOLERANCE)
+}
+
+/// Derivatives of the dynamics agree with differences of the reference.
+#[test]
+fn derivatives_agree() -> Result<(), Failure> {
+    let names = [
+        "inverse_dynamics_by_displacement",
+        "inverse_dynamics_by_twist",
+        "forward_dynamics_by_displacement",
+        "forward_dynamics_by_twist",
+        "mass_matrix",
+        "joints",
+    ];
+    let choice = Choice::new(names).map_err(|unknown| format!("{unknown:?}"))?;
+    for text in [stephenson(""), branch(), spatial()] {
+        let source = Source::new("dependent.toml", text);
+        let tolerances = [OF_DERIVATIVES; 2];
+        let failures = of_functions(source, by_tiers(STATES), tolerances, Some(&choice))?;
+        assert!(failures.is_empty(), "{}", failures.join("\n"));
+    }
+    Ok(())
 }
 
 /// Whole-robot model of a description with all functions.

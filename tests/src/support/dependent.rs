@@ -176,3 +176,42 @@ pub fn spatial() -> String {
     ]
     .concat()
 }
+
+/// Stephenson's six-bar with springs, a payload, frames, a motor of two joints, and friction.
+#[must_use]
+pub fn equipped() -> String {
+    let spring = "spring = \"q - 20 deg\"\nstribeck = 0.1\n";
+    let link = "name = \"link\"\ntype = \"revolute\"\n";
+    let text = stephenson(spring).replace(link, &format!("{link}{spring}"));
+    text + r#"
+[motor.both]
+turns = "outer.q_pin - 0.5 * skeleton.q_link"
+
+[payload.box]
+body = "link"
+at = [0.1, 0.02, 0.03]
+rotation = [0.2, 0, "20 deg"]
+
+[frame.tool]
+body = "link"
+at = [0.05, -0.02, 0.01]
+rotation = [0.1, 0, 0]
+
+[frame.rod]
+body = "outer.pin"
+at = [0.07, 0, 0]
+
+[[spring]]
+name = "gas"
+from = { body = "inner.pin", at = [0.1, 0.02, 0] }
+to = { body = "link", at = [0.1, 0.02, 0] }
+force = "l - 0.05 m"
+known = "3 N s/m * dl"
+
+[[spring]]
+name = "hook"
+from = { body = "ground", at = [0.2, 0.1, 0.5] }
+to = { body = "link", at = [0.02, 0.03, 0] }
+force = "l - 0.1 m"
+"#
+}
