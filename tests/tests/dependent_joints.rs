@@ -76,12 +76,23 @@ fn derivatives_agree() -> Result<(), Failure> {
         "joints",
     ];
     let choice = Choice::new(names).map_err(|unknown| format!("{unknown:?}"))?;
-    for text in [stephenson(""), branch(), spatial()] {
+    let robots = [
+        ("stephenson", stephenson("")),
+        ("slider", slider()),
+        ("rigid", rigid()),
+        ("branch", branch()),
+        ("spatial", spatial()),
+    ];
+    let mut all = Vec::new();
+    for (name, text) in robots {
         let source = Source::new("dependent.toml", text);
         let tolerances = [OF_DERIVATIVES; 2];
-        let failures = of_functions(source, by_tiers(STATES), tolerances, Some(&choice))?;
-        assert!(failures.is_empty(), "{}", failures.join("\n"));
+        match of_functions(source, by_tiers(STATES), tolerances, Some(&choice)) {
+            Ok(failures) => all.extend(failures.into_iter().map(|line| format!("{name}: {line}"))),
+            Err(error) => all.push(format!("{name}: {error}")),
+        }
     }
+    assert!(all.is_empty(), "{}", all.join("\n"));
     Ok(())
 }
 

@@ -21,6 +21,9 @@ use rand_pcg::Pcg64;
 ///
 /// The latter two are minimised over the unit of length.
 pub const MAX_CONDITION: f64 = 60.0;
+/// Largest rate of a joint per unit rate of the independent ones, if others of the pose depend on
+/// them: near a dead centre it is infinite.
+pub const MAX_GAIN: f64 = 10.0;
 /// Largest twist coordinate, m/s and rad/s.
 pub const MAX_SPEED: f64 = 1.5;
 /// Largest derivative of a twist coordinate, m/s² and rad/s².
@@ -69,12 +72,15 @@ pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Result<V
     }
 }
 
-/// Whether the legs, the inverse Jacobian and the reduced closure are well conditioned.
+/// Whether the legs, the inverse Jacobian and the reduced closure are well conditioned, and dependent
+/// joints are far from a dead centre.
 #[must_use]
 pub fn is_regular(mechanism: &Mechanism, state: &State) -> bool {
     state.jacobians(mechanism).is_ok_and(|jacobians| {
         let per_twist = |matrix: &DMatrix<f64>| unitless_condition(&mechanism.motion, matrix);
-        jacobians.worst_leg_condition(mechanism) < MAX_CONDITION
+        let is_far = !mechanism.has_dependent_joints() || jacobians.joints.amax() < MAX_GAIN;
+        is_far
+            && jacobians.worst_leg_condition(mechanism) < MAX_CONDITION
             && per_twist(&jacobians.inverse) < MAX_CONDITION
             && per_twist(&reduced_closure(mechanism, &jacobians.a_p)) < MAX_CONDITION
     })
