@@ -1,7 +1,7 @@
 //! Checks a description and returns the mechanism: mobility, closure at home, singular legs.
 
 use super::actuation::{rates_per_velocity, shared_velocities};
-use super::dependent::{self, Moving};
+use super::dependent::{self, Moving, WEAK};
 use super::explain;
 use super::home::{Home, approach};
 use super::mobility::Mobility;
@@ -299,9 +299,6 @@ fn check_held(description: &Description, mechanism: &Mechanism) -> Result<(), Di
         Ok(())
     }
 }
-
-/// Largest ratio of the condition of chosen independent coordinates to that of the best choice.
-pub(super) const WEAK: f64 = 1e3;
 
 /// Largest number of independent joints of a leg: operation counts of its model grow quadratically,
 /// the time of the search with the fourth power.

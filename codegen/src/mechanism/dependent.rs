@@ -6,13 +6,15 @@
 //! space of Φ are the allowed motions, as many as there are independent joints. Its basis with unit
 //! rates of the independent joints gives the rates of all joints per independent one.
 
-use super::check::WEAK;
 use super::home::{Home, REGULAR, condition, lenient_limit};
 use super::mobility::stacked;
 use super::numeric::best_conditioned;
 use super::singular_values::{SingularValues, rank};
 use super::{BodyIndex, JointKind, Mechanism};
 use nalgebra::{DMatrix, DVector, Vector3};
+
+/// Largest ratio of the condition of chosen independent coordinates to that of the best choice.
+pub(super) const WEAK: f64 = 1e3;
 
 /// Largest gap of a chain that counts as closed, m and rad.
 const CLOSED: f64 = 1e-10;

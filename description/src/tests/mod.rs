@@ -2,6 +2,7 @@
 
 mod chains;
 mod compound;
+mod dependent;
 mod documentation;
 mod errors;
 mod experiments;

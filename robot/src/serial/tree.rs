@@ -61,6 +61,14 @@ impl Tree {
                 help: "attach the branch to a body of the skeleton".to_owned(),
             });
         }
+        if mechanism.has_dependent_joints() {
+            return Err(Refusal {
+                message:
+                    "joints of the skeleton depend on others, which those of a serial robot do not"
+                        .to_owned(),
+                help: "export skeletons without `dependent` joints only".to_owned(),
+            });
+        }
         let Some(leg) = mechanism.legs.first() else {
             return Err(Refusal {
                 message: "the robot has no joints".to_owned(),

@@ -42,6 +42,7 @@ robot!(spatial_3rps_ups: Spatial3RpsUps);
 robot!(spherical_3rrr: Spherical3Rrr);
 robot!(spherical_4rrr: Spherical4Rrr);
 robot!(stanford: Stanford);
+robot!(stephenson: Stephenson);
 robot!(tricept: Tricept);
 robot!(tricept_4: Tricept4);
 robot!(two_motor_axis: TwoMotorAxis);
@@ -91,6 +92,7 @@ pub fn by_stem(stem: &str) -> Option<&'static dyn Model> {
         "spherical_3rrr" => &Spherical3Rrr,
         "spherical_4rrr" => &Spherical4Rrr,
         "stanford" => &Stanford,
+        "stephenson" => &Stephenson,
         "three_leg_point" => &ThreeLegPoint,
         "tricept" => &Tricept,
         "tricept_4" => &Tricept4,

@@ -47,6 +47,7 @@ macro_rules! library {
             spherical_3rrr: Spherical3Rrr,
             spherical_4rrr: Spherical4Rrr,
             stanford: Stanford,
+            stephenson: Stephenson,
             three_leg_point: ThreeLegPoint,
             tricept: Tricept,
             tricept_4: Tricept4,

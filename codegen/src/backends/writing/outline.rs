@@ -167,6 +167,15 @@ fn columns(function: &CompiledFunction) -> Option<Table> {
     })
 }
 
+/// Names of the subjects of a sentence with its verb.
+fn are(names: &[String]) -> String {
+    let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    match names.as_slice() {
+        [one] => format!("{one} is"),
+        all => format!("{} are", all.join(", ")),
+    }
+}
+
 /// Description of an input.
 #[must_use]
 pub fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
@@ -183,6 +192,11 @@ pub fn input_meaning(model: &RobotModel, name: &str) -> Option<String> {
         "pose" if platform.is_some_and(|p| p.motion.has_quaternion()) => format!(
             "x = `[{}]` (m), in the base frame; the quaternion is scaled to length 1",
             coordinates()
+        ),
+        "pose" if model.mechanism.has_dependent_joints() => format!(
+            "x = `[{}]` (m, rad), joints that satisfy the closures; {} independent",
+            coordinates(),
+            are(&model.mechanism.coordinates())
         ),
         "pose" if of_skeleton => {
             format!("x = `[{}]` (m, rad), independent joints", coordinates())
