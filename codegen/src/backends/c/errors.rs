@@ -79,14 +79,9 @@ fn kinds(model: &RobotModel) -> Vec<ErrorEntry> {
         });
     }
     if model.mechanism.has_dependent_coordinates() {
-        let others = if model.mechanism.is_parasitic() {
-            "platform's motion"
-        } else {
-            "dependent joints"
-        };
         kinds.push(kind(
             "SINGULAR_COORDINATES",
-            &format!("the independent coordinates do not determine the {others} here"),
+            "the independent coordinates do not determine the others here",
         ));
         kinds.extend(
             legs.zip(leg_constants(model))
