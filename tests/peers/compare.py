@@ -30,7 +30,9 @@ TOLERANCE = 1e-8
 SIZES = (0.08, 0.02, 0.005, 0.001)
 # Largest displacement of the motors of a platform with parasitic motion, rad or m.
 PLATFORM_SIZE = 0.05
-NEARER = ("out of reach", "singular")
+# Steps of Newton's method for dependent joints.
+CLOSING_STEPS = 6
+NEARER = ("out of reach", "singular", "does not allow")
 
 
 def run(overact, *arguments, text=None):
@@ -52,15 +54,34 @@ def without_dry_friction(toml, folder):
 
 
 def drawn_states(sheet, size, order=None, count=5):
-    """Random states up to a displacement from home, drawn for coordinates in the given order of names."""
+    """Random states up to a displacement from home, drawn for coordinates in the given order of names.
+
+    Dependent joints of the pose stay at home; `closed` corrects them.
+    """
     random = np.random.default_rng(1)
     home = np.array(sheet["home_pose"])
-    own = [(order or sheet["pose"]).index(name) for name in sheet["pose"]]
+    own = [(order or sheet["coordinates"]).index(name) for name in sheet["coordinates"]]
+    independent = [sheet["pose"].index(name) for name in sheet["coordinates"]]
     states = []
     for _ in range(count):
         drawn = [random.uniform(-largest, largest, sheet["dof"])[own] for largest in (size, 1, 3)]
-        state = {"pose": home + drawn[0], "twist": drawn[1], "acceleration": drawn[2]}
+        pose = home.copy()
+        pose[independent] += drawn[0]
+        state = {"pose": pose, "twist": drawn[1], "acceleration": drawn[2]}
         states.append({key: list(value) for key, value in state.items()})
+    return states
+
+
+def closed(overact, toml, sheet, states):
+    """States whose dependent joints close the chains, by Newton's method."""
+    dependent = [at for at, name in enumerate(sheet["pose"]) if name not in sheet["coordinates"]]
+    for _ in range(CLOSING_STEPS if dependent else 0):
+        errors = evaluate(overact, toml, "pose_error", states)
+        jacobians = evaluate(overact, toml, "pose_error_jacobian", states)
+        for state, error, jacobian in zip(states, errors, jacobians):
+            columns = np.reshape(jacobian, (len(dependent), len(sheet["pose"])))[:, dependent]
+            for at, step in zip(dependent, np.linalg.solve(columns, np.ravel(error))):
+                state["pose"][at] -= step
     return states
 
 
@@ -84,7 +105,7 @@ def sample(overact, toml, figures, size):
     """States of a description with all outputs of overact that the comparison needs."""
     sheet, _, parameters = figures
     r = sheet["dof"]
-    states = drawn_states(sheet, size)
+    states = closed(overact, toml, sheet, drawn_states(sheet, size))
     count = len(states)
     result = []
     has_loops = sheet["joints"] > r

@@ -419,6 +419,12 @@ impl Mechanism {
         }
     }
 
+    /// Names of the joints in the pose of a robot without a platform; none with one.
+    #[must_use]
+    pub fn pose_joint_names(&self) -> Vec<String> {
+        self.own_names(self.pose_joints(), |name| name)
+    }
+
     /// Names of joints of a robot without a platform; those of a skeleton are named without their
     /// leg.
     fn own_names(&self, joints: Vec<JointIndex>, form: impl Fn(String) -> String) -> Vec<String> {

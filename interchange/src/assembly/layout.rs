@@ -6,19 +6,18 @@
 //!
 //! Bodies that alone connect others to the ground are reserved for the skeleton at first. If no
 //! such skeleton exists, chains may carry branches, whose joints are coordinates as well.
+//!
+//! If no chains solve the robot one after the other, the skeleton may have joints that they
+//! determine together (`coordinates.rs`), as few as possible.
 
 use super::{
-    motion::{State, rank},
+    coordinates::{self, Tree, skeleton_freedoms, surplus},
     network::{Network, Origin},
     platform_search::platforms,
-    solvable_chains::{SolvableChain, cheapest, follows, freedoms},
+    solvable_chains::{Known, SolvableChain, cheapest, follows},
     unsolved::{self, Failure, Furthest},
 };
-use crate::{files::Files, model::JointType, options::Options};
-use nalgebra::{DMatrix, Vector3};
-
-/// Edges of a tree in order, each with the group that it starts from.
-pub(crate) type Tree = Vec<(usize, usize)>;
+use crate::{files::Files, options::Options};
 
 /// Parts of the layout that do not belong to the skeleton.
 #[derive(Debug, Clone)]
@@ -36,6 +35,8 @@ pub(crate) struct Layout {
     pub(crate) skeleton: Tree,
     /// Chains in the order of their solution; each branch follows the chain that carries it.
     pub(crate) pieces: Vec<LayoutPiece>,
+    /// Edges of skeleton and branches whose joints the chains determine.
+    pub(crate) dependent: Vec<usize>,
     /// Redundant edges: the others imply their constraints.
     pub(crate) redundant: Vec<usize>,
 }
@@ -49,6 +50,13 @@ impl Layout {
         });
         let trees = std::iter::once(&self.skeleton).chain(branches);
         trees.flatten().copied().collect()
+    }
+
+    /// Edges whose joints are independent coordinates, in the order of the description.
+    pub(crate) fn independent(&self) -> Tree {
+        let mut all = self.coordinates();
+        all.retain(|(edge, _)| !self.dependent.contains(edge));
+        all
     }
 }
 
@@ -67,9 +75,13 @@ pub(crate) fn find(files: &Files, network: &mut Network<'_>, options: &Options) 
         None => None,
         Some(names) => Some(wanted(files, network, names)?),
     };
-    match search_all(network, wanted) {
-        Ok(found) => Some(found),
-        Err(failure) => {
+    let failure = match search_all(network, wanted.clone()) {
+        Ok(found) => return Some(found),
+        Err(failure) => failure,
+    };
+    match with_dependent(network, wanted.as_deref()) {
+        Some(found) => Some(found),
+        None => {
             unsolved::report(files, network, &failure, options.coordinates.is_some());
             None
         }
@@ -86,10 +98,10 @@ pub(crate) fn exists(network: &mut Network<'_>) -> bool {
 /// Searches with the wanted edges as coordinates, or with each kind of coordinates in turn.
 fn search_all(network: &mut Network<'_>, wanted: Option<Vec<usize>>) -> Result<Layout, Failure> {
     let is_free = wanted.is_none() && !network.model.closures.is_empty();
-    if is_free && let Ok(found) = search(network, Some(driven(network))) {
+    if is_free && let Ok(found) = search(network, Some(driven(network)), 0) {
         return Ok(found);
     }
-    let failure = match search(network, wanted) {
+    let failure = match search(network, wanted, 0) {
         Ok(found) => return Ok(found),
         Err(failure) => failure,
     };
@@ -101,12 +113,24 @@ fn search_all(network: &mut Network<'_>, wanted: Option<Vec<usize>>) -> Result<L
     for platform in candidates {
         network.add_platform(platform);
         let edge = network.edges.len() - 1;
-        match search(network, Some(vec![edge])) {
+        match search(network, Some(vec![edge]), 0) {
             Ok(found) => return Ok(found),
             Err(_) => network.remove_platform(),
         }
     }
     Err(failure)
+}
+
+/// Searches with as few dependent joints as possible; the wanted edges are independent ones.
+fn with_dependent(network: &Network<'_>, wanted: Option<&[usize]>) -> Option<Layout> {
+    if network.model.closures.is_empty() || network.mobility == 0 {
+        return None;
+    }
+    (1..=coordinates::MOST).find_map(|dependent| {
+        let mut found = search(network, None, dependent).ok()?;
+        found.dependent = coordinates::choose(network, &found.coordinates(), wanted)?;
+        Some(found)
+    })
 }
 
 /// Edges of motors that do not follow other joints.
@@ -120,19 +144,15 @@ fn driven(network: &Network<'_>) -> Vec<usize> {
 }
 
 /// Searches skeleton and chains whose coordinates are some of the wanted edges, if given.
-fn search(network: &Network<'_>, wanted: Option<Vec<usize>>) -> Result<Layout, Failure> {
-    let mut search = Search {
-        network,
-        // Groups that alone connect others to the ground must be part of the skeleton, because the
-        // groups behind them have their own coordinates.
-        kept: network.blocks.is_cut.clone(),
-        may_branch: false,
-        wanted,
-        best: None,
-        furthest: Furthest::default(),
-        tries: 0,
-        paths: 0,
-    };
+///
+/// The chains determine so many `dependent` joints of the skeleton.
+fn search(
+    network: &Network<'_>,
+    wanted: Option<Vec<usize>>,
+    dependent: usize,
+) -> Result<Layout, Failure> {
+    let mut search = Search::new(network, wanted);
+    search.dependent = dependent;
     search.grow(PartialLayout::start(network));
     if search.best.is_none() {
         search.kept.fill(false);
@@ -233,6 +253,7 @@ impl PartialLayout {
         Layout {
             skeleton: self.skeleton.clone(),
             pieces: self.pieces.clone(),
+            dependent: Vec::new(),
             redundant: unused.map(|(edge, _)| edge).collect(),
         }
     }
@@ -244,6 +265,8 @@ struct Search<'s, 'm> {
     /// Whether bodies of chains may carry branches.
     may_branch: bool,
     wanted: Option<Vec<usize>>,
+    /// Number of joints of the skeleton that chains determine.
+    dependent: usize,
     best: Option<(usize, Layout)>,
     furthest: Furthest,
     tries: usize,
@@ -251,7 +274,24 @@ struct Search<'s, 'm> {
     paths: usize,
 }
 
-impl Search<'_, '_> {
+impl<'s, 'm> Search<'s, 'm> {
+    /// Search before its first step, without dependent joints.
+    fn new(network: &'s Network<'m>, wanted: Option<Vec<usize>>) -> Self {
+        Self {
+            network,
+            // Groups that alone connect others to the ground must be part of the skeleton, because
+            // the groups behind them have their own coordinates.
+            kept: network.blocks.is_cut.clone(),
+            may_branch: false,
+            wanted,
+            dependent: 0,
+            best: None,
+            furthest: Furthest::default(),
+            tries: 0,
+            paths: 0,
+        }
+    }
+
     /// Whether the search has used up its extensions or paths.
     fn is_exhausted(&self) -> bool {
         self.tries > TRIES || self.paths > PATHS
@@ -260,7 +300,13 @@ impl Search<'_, '_> {
     fn grow(&mut self, mut partial: PartialLayout) {
         self.tries += 1;
         while !self.is_exhausted() {
-            let (ear, paths) = cheapest(self.network, &partial.solved, &self.kept, &partial.used);
+            let known = Known {
+                solved: &partial.solved,
+                kept: &self.kept,
+                used: &partial.used,
+                needs_all: self.dependent > 0,
+            };
+            let (ear, paths) = cheapest(self.network, known);
             self.paths += paths;
             let Some(ear) = ear else { break };
             for &group in &ear.groups {
@@ -295,7 +341,9 @@ impl Search<'_, '_> {
         for (edge, from, to) in self.candidates(&partial) {
             let mut next = partial.clone();
             next.push(edge, from, to);
-            if !independent(self.network, &next.layout().coordinates()) {
+            if !self.network.model.closures.is_empty()
+                && surplus(self.network, &next.layout().coordinates()) > self.dependent
+            {
                 continue;
             }
             // On ties, prefer the skeleton with fewer joints.
@@ -343,7 +391,9 @@ impl Search<'_, '_> {
         let coordinates: usize = skeleton_freedoms(self.network, &layout.coordinates())
             .iter()
             .sum();
-        let is_complete = coordinates == self.network.mobility;
+        // With dependent joints, a constraint that is left out would not determine them.
+        let is_complete = coordinates == self.network.mobility + self.dependent
+            && (self.dependent == 0 || layout.redundant.is_empty());
         if is_complete && keeps_couplings(self.network, &layout) {
             self.best = Some((partial.cost, layout));
         }
@@ -371,81 +421,4 @@ fn keeps_couplings(network: &Network<'_>, layout: &Layout) -> bool {
             own.is_none() || own == tree_of(leader)
         })
     })
-}
-
-/// Number of one-degree-of-freedom joints for each edge of a skeleton.
-pub(crate) fn skeleton_freedoms(network: &Network<'_>, skeleton: &[(usize, usize)]) -> Vec<usize> {
-    let of = |&(edge, from): &(usize, usize)| {
-        let groups = network.edges[edge].groups;
-        freedoms(network, edge, groups[usize::from(groups[0] == from)], true)
-    };
-    skeleton.iter().map(of).collect()
-}
-
-/// Whether the skeleton's joints can move independently.
-fn independent(network: &Network<'_>, skeleton: &[(usize, usize)]) -> bool {
-    if network.model.closures.is_empty() {
-        return true;
-    }
-    let freedoms: usize = skeleton_freedoms(network, skeleton).iter().sum();
-    // Home may be singular; the skeleton must be independent in all other configurations.
-    let looked_at = 1.min(network.states.len() - 1)..network.states.len();
-    looked_at.into_iter().all(|state| {
-        let twists = &network.twists[state];
-        let rates = skeleton_rates(network, skeleton, &network.states[state], twists);
-        rates.nrows() == freedoms && rank(&rates).0 == freedoms
-    })
-}
-
-/// Rates of the skeleton's joints for each motion of the network, given the groups' `twists`.
-pub(crate) fn skeleton_rates(
-    network: &Network<'_>,
-    skeleton: &[(usize, usize)],
-    state: &State,
-    twists: &[DMatrix<f64>],
-) -> DMatrix<f64> {
-    let mut rows: Vec<Vec<f64>> = Vec::new();
-    for &(index, from) in skeleton {
-        let edge = &network.edges[index];
-        if follows(network, index) {
-            continue;
-        }
-        let (to, sign) = if edge.groups[0] == from {
-            (edge.groups[1], 1.0)
-        } else {
-            (edge.groups[0], -1.0)
-        };
-        let relative = &twists[to] - &twists[from];
-        let axis = network.axis(edge, state);
-        if let (Origin::Platform, Some(platform)) = (edge.origin, &network.platform) {
-            rows.extend(platform.rates(&platform.at(network, state), &relative));
-            continue;
-        }
-        let turning = |e: &Vector3<f64>| {
-            (relative.rows(3, 3).transpose() * e)
-                .iter()
-                .copied()
-                .collect()
-        };
-        match edge.kind {
-            JointType::Revolute => rows.push(turning(&(axis.direction * sign))),
-            JointType::Prismatic => {
-                let velocity = relative.rows(0, 3).transpose() * axis.direction * sign;
-                rows.push(velocity.iter().copied().collect());
-            }
-            JointType::Ball if network.groups[to].spins => {
-                let line = network.line(to, state);
-                let across = if line.x.abs() < 0.7 {
-                    Vector3::x()
-                } else {
-                    Vector3::y()
-                };
-                let first = line.cross(&across).normalize();
-                rows.extend([first, line.cross(&first)].iter().map(turning));
-            }
-            JointType::Ball => rows.extend((0..3).map(|i| turning(&Vector3::ith(i, 1.0)))),
-        }
-    }
-    let columns = twists.first().map_or(0, DMatrix::ncols);
-    DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j])
 }

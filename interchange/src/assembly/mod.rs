@@ -1,6 +1,7 @@
 //! Derives a skeleton and chains from bodies and closures.
 
 pub(crate) mod blocks;
+pub(crate) mod coordinates;
 pub(crate) mod fitting;
 pub(crate) mod free_bodies;
 pub(crate) mod home;

@@ -66,21 +66,30 @@ pub(crate) fn follows(network: &Network<'_>, edge: usize) -> bool {
     }
 }
 
-/// Cheapest chain between solved groups that avoids `kept` groups, and the number of explored paths.
+/// Known part of a network, from which a search for chains starts.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Known<'s> {
+    /// Groups of known motion.
+    pub(crate) solved: &'s [bool],
+    /// Groups that no chain may contain.
+    pub(crate) kept: &'s [bool],
+    /// Edges that are part of the layout already.
+    pub(crate) used: &'s [bool],
+    /// Whether free joints between known groups are chains, too, since they block directions.
+    pub(crate) needs_all: bool,
+}
+
+/// Cheapest chain between known groups, and the number of explored paths.
 pub(crate) fn cheapest(
     network: &Network<'_>,
-    solved: &[bool],
-    kept: &[bool],
-    used: &[bool],
+    known: Known<'_>,
 ) -> (Option<SolvableChain>, usize) {
     let mut best: Option<SolvableChain> = None;
     let mut paths = 0;
-    for start in (0..solved.len()).filter(|&group| solved[group]) {
+    for start in (0..known.solved.len()).filter(|&group| known.solved[group]) {
         let mut search = Search {
             network,
-            solved,
-            kept,
-            used,
+            known,
             best: &mut best,
             ways: 0,
         };
@@ -92,9 +101,7 @@ pub(crate) fn cheapest(
 
 struct Search<'s, 'm> {
     network: &'s Network<'m>,
-    solved: &'s [bool],
-    kept: &'s [bool],
-    used: &'s [bool],
+    known: Known<'s>,
     best: &'s mut Option<SolvableChain>,
     ways: usize,
 }
@@ -109,24 +116,26 @@ impl Search<'_, '_> {
         for &index in &self.network.edges_at[at] {
             let edge = &self.network.edges[index];
             let is_platform = edge.origin == Origin::Platform;
-            if self.used[index] || edges.contains(&index) || is_platform {
+            if self.known.used[index] || edges.contains(&index) || is_platform {
                 continue;
             }
             let next = edge.groups[usize::from(edge.groups[0] == at)];
             if next == at || groups.contains(&next) || follows(self.network, index) {
                 continue;
             }
-            // A single edge between two solved groups matters only if it has a motor or friction.
-            if self.solved[next] && groups.len() == 1 && edge.is_free {
+            // A single edge between two solved groups matters only if it has a motor or friction, or
+            // if joints of the skeleton depend on it.
+            let is_single = self.known.solved[next] && groups.len() == 1;
+            if is_single && edge.is_free && !self.known.needs_all {
                 continue;
             }
             groups.push(next);
             edges.push(index);
             // Chains start at the ground and never end there.
             if next == 0 {
-            } else if self.solved[next] {
+            } else if self.known.solved[next] {
                 self.try_ends(groups, edges);
-            } else if !self.kept[next] {
+            } else if !self.known.kept[next] {
                 self.extend(groups, edges);
             }
             groups.pop();

@@ -93,7 +93,7 @@ pub(super) fn report(files: &Files, network: &Network<'_>, failure: &Failure, wa
             "the platform's directions of motion change with its pose. Import describes such a platform by `independent` coordinates if its legs have no branches and it carries no joint: fix the other joints in the file, or describe the robot by hand as robots/spatial_3rps.toml"
         }
         (false, false) => {
-            "a chain leads from one known body to another through at most six joints, or three and a ball joint, and all choices of coordinates were tried. A link on three rods of unknown positions has no description: fix one of these joints in the file, or remove a closure, and identify the other bodies"
+            "a chain leads from one known body to another through at most six joints, or three and a ball joint. All choices of coordinates were tried, also with joints that several chains determine together: fix one of these joints in the file, or remove a closure, and identify the other bodies"
         }
     };
     match open.first().and_then(|&edge| place(network, edge)) {

@@ -3,7 +3,8 @@
 use super::balls::Ball;
 use crate::{
     assembly::{
-        layout::{Layout, skeleton_rates},
+        coordinates::skeleton_rates,
+        layout::Layout,
         motion::{Motion, State},
         network::{Network, Origin},
         platform::Platform,
@@ -124,7 +125,7 @@ impl<'g, 'm> Guide<'g, 'm> {
     /// Rates of the coordinates for each motion.
     fn own_rates(&self, state: &State, groups: &[DMatrix<f64>]) -> Option<DMatrix<f64>> {
         let mut rows: Vec<Vec<f64>> = Vec::new();
-        for step in &self.layout.coordinates() {
+        for step in &self.layout.independent() {
             if let Some(platform) = self.platform(step.0) {
                 let at = platform.at(self.network, state);
                 let mut own = platform.rates(&at, &groups[platform.group]);
@@ -202,7 +203,7 @@ impl<'g, 'm> Guide<'g, 'm> {
                 Origin::Closure(_) | Origin::Platform => vec![None; count],
             }
         };
-        self.layout.coordinates().iter().flat_map(of).collect()
+        self.layout.independent().iter().flat_map(of).collect()
     }
 
     /// First joint beyond its limits.

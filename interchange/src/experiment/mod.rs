@@ -158,13 +158,15 @@ pub(crate) fn design(
     })
 }
 
-/// Coordinates of the description: names of skeleton joints, and whether they are angles.
+/// Independent coordinates of the description: names of joints, and whether they are angles.
 fn coordinates(plan: &Plan) -> Vec<(String, bool)> {
     let trees = plan.legs.iter().enumerate();
     let trees = trees.filter(|(_, leg)| leg.end.is_none());
     let of_tree = |(at, leg): (usize, &'_ Leg)| {
         let moved = leg.joints.iter();
-        let moved = moved.filter(|joint| joint.kind != "fixed" && joint.follows.is_none());
+        let moved = moved.filter(|joint| {
+            joint.kind != "fixed" && joint.follows.is_none() && !joint.is_dependent
+        });
         let named = moved.map(|joint| {
             let name = match at {
                 0 => joint.name.clone(),

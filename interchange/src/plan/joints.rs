@@ -3,6 +3,7 @@
 use super::{Joint, names::Names};
 use crate::{
     assembly::{
+        coordinates::Tree,
         network::{Edge, Network, Origin},
         platform::Platform,
         solvable_chains::{Ending, SolvableChain},
@@ -20,6 +21,8 @@ use nalgebra::{Point3, Vector3};
 pub(super) struct Draft<'d, 'm> {
     files: &'d Files,
     network: &'d Network<'m>,
+    /// Edges whose joints the chains determine.
+    dependent: &'d [usize],
     pub(super) nodes: Vec<Node>,
     /// Group that each node carries; `None` for massless bodies within a universal or ball joint.
     pub(super) groups: Vec<Option<usize>>,
@@ -30,15 +33,29 @@ pub(super) struct Draft<'d, 'm> {
 }
 
 impl<'d, 'm> Draft<'d, 'm> {
-    pub(super) fn new(files: &'d Files, network: &'d Network<'m>) -> Self {
+    pub(super) fn new(
+        files: &'d Files,
+        network: &'d Network<'m>,
+        dependent: &'d [usize],
+    ) -> Self {
         Self {
             files,
             network,
+            dependent,
             nodes: Vec::new(),
             groups: Vec::new(),
             names: Vec::new(),
             origins: Vec::new(),
             used: Names::default(),
+        }
+    }
+
+    /// Adds the axes of all edges of a tree.
+    pub(super) fn push_tree(&mut self, tree: &Tree, may_shorten: bool) {
+        for &(edge, from) in tree {
+            let groups = self.network.edges[edge].groups;
+            let to = groups[usize::from(groups[0] == from)];
+            self.push(edge, from, to, may_shorten);
         }
     }
 
@@ -225,6 +242,7 @@ impl<'d, 'm> Draft<'d, 'm> {
             antecedent,
             step,
             follows: None,
+            is_dependent: self.dependent.contains(&index),
             actuated: false,
             parameters: Some(Vec::new()),
             values: Vec::new(),
@@ -391,6 +409,7 @@ fn fixed(name: String, antecedent: Option<String>, step: Step, comment: Vec<Stri
         antecedent,
         step,
         follows: None,
+        is_dependent: false,
         actuated: false,
         parameters: Some(Vec::new()),
         values: Vec::new(),

@@ -9,7 +9,8 @@ mod springs;
 
 use crate::{
     assembly::{
-        layout::{Layout, LayoutPiece, Tree},
+        coordinates::Tree,
+        layout::{Layout, LayoutPiece},
         misfit,
         network::Network,
         solvable_chains::{Ending, SolvableChain},
@@ -64,6 +65,8 @@ pub(crate) struct Joint {
     pub(crate) step: Step,
     /// Expression of its coupling; its own variable if `None`.
     pub(crate) follows: Option<String>,
+    /// Whether the chains determine its position, in a skeleton or branch.
+    pub(crate) is_dependent: bool,
     pub(crate) actuated: bool,
     /// Its parameters; the default set if `None`.
     pub(crate) parameters: Option<Vec<&'static str>>,
@@ -123,7 +126,7 @@ impl Plan {
             legs.push(match piece {
                 LayoutPiece::Chain(ear) => chain(files, network, ear, &mut bodies, &mut names)?,
                 LayoutPiece::Branch(tree) => {
-                    let (leg, own) = branch(files, network, tree, &mut bodies, &mut names)?;
+                    let (leg, own) = branch(files, network, layout, tree, &mut bodies, &mut names)?;
                     axes.extend(own);
                     leg
                 }
@@ -155,7 +158,8 @@ fn skeleton(
     names: &mut Names,
 ) -> (Leg, Vec<Vector3<f64>>) {
     let is_tree = layout.pieces.is_empty();
-    let draft = drafted(files, network, &layout.skeleton, !is_tree);
+    let mut draft = Draft::new(files, network, &layout.dependent);
+    draft.push_tree(&layout.skeleton, !is_tree);
     let framed = leg::framed(&draft.nodes, &Pose::identity(), None);
     for (at, group) in draft.groups.iter().enumerate() {
         if let Some(group) = group {
@@ -189,6 +193,15 @@ fn independent(network: &Network<'_>, layout: &Layout) -> String {
     } else {
         ""
     };
+    if !layout.dependent.is_empty() {
+        let others = match network.mobility {
+            1 => "the other is the independent coordinate".to_owned(),
+            count => format!("the others{branches} are the {count} independent coordinates"),
+        };
+        return format!(
+            "The skeleton: the chains determine its `dependent` joints; {others}."
+        );
+    }
     if network.mobility == 1 {
         return "The skeleton: its joint is the independent coordinate, which determines the chains.".to_owned();
     }
@@ -198,32 +211,18 @@ fn independent(network: &Network<'_>, layout: &Layout) -> String {
     )
 }
 
-/// Builds the joints of a tree.
-fn drafted<'d, 'm>(
-    files: &'d Files,
-    network: &'d Network<'m>,
-    tree: &Tree,
-    may_shorten: bool,
-) -> Draft<'d, 'm> {
-    let mut draft = Draft::new(files, network);
-    for &(edge, from) in tree {
-        let groups = network.edges[edge].groups;
-        let to = groups[usize::from(groups[0] == from)];
-        draft.push(edge, from, to, may_shorten);
-    }
-    draft
-}
-
 /// Builds a tree on a body of a chain, and the axes of its joints.
 fn branch(
     files: &Files,
     network: &Network<'_>,
+    layout: &Layout,
     tree: &Tree,
     bodies: &mut Bodies,
     names: &mut Names,
 ) -> Option<(Leg, Vec<Vector3<f64>>)> {
     let &(first, carrier) = tree.first()?;
-    let draft = drafted(files, network, tree, true);
+    let mut draft = Draft::new(files, network, &layout.dependent);
+    draft.push_tree(tree, true);
     let (base_name, base_frame) = bodies[carrier].clone()?;
     let base = leg::base(&draft.nodes, &base_frame, None);
     let framed = leg::framed(&draft.nodes, &base, None);
@@ -260,7 +259,7 @@ fn chain(
     names: &mut Names,
 ) -> Option<Leg> {
     let (first, last) = (*ear.groups.first()?, *ear.groups.last()?);
-    let mut draft = Draft::new(files, network);
+    let mut draft = Draft::new(files, network, &[]);
     let is_point = ear.ending == Ending::Point;
     let count = if is_point {
         ear.edges.len() - 1

@@ -262,6 +262,9 @@ fn joint(text: &mut String, leg: &str, joint: &Joint) {
     if joint.actuated {
         text.push_str("actuated = true\n");
     }
+    if joint.is_dependent {
+        text.push_str("dependent = true\n");
+    }
     if let Some(parameters) = &joint.parameters {
         let list: Vec<String> = parameters.iter().map(|p| format!("\"{p}\"")).collect();
         let _ = writeln!(text, "parameters = [{}]", list.join(", "));

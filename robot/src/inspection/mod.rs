@@ -139,7 +139,7 @@ impl Inspection {
         let joint_names: Vec<String> = joints.iter().map(|&at| mechanism.joint_name(at)).collect();
         let coordinates = mechanism.coordinates();
         let pose = match &mechanism.platform {
-            None => coordinates.clone(),
+            None => mechanism.pose_joint_names(),
             Some(_) => mechanism.pose_coordinates(),
         };
         let actuator_names = mechanism.actuator_names();
