@@ -161,6 +161,9 @@ impl State {
     }
 }
 
+/// Pose, and positions of all joints.
+pub type PoseAndJoints = (Vec<f64>, DVector<f64>);
+
 /// Pose and joints after a displacement of the independent coordinates, if the pose has others.
 ///
 /// # Errors
@@ -171,7 +174,7 @@ pub fn displaced(
     pose: &[f64],
     q: &DVector<f64>,
     step: &DVector<f64>,
-) -> Result<Option<(Vec<f64>, DVector<f64>)>, Error> {
+) -> Result<Option<PoseAndJoints>, Error> {
     if matches!(mechanism.motion, Motion::Parasitic(_)) {
         return parasitic_motion::displaced(mechanism, pose, q, step).map(Some);
     }
