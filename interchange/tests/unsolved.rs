@@ -4,11 +4,8 @@ use overact_interchange::{Options, import};
 
 const MASS: &str = r#"<inertial pos="0.1 0 0.05" mass="1" diaginertia=".01 .02 .02"/>"#;
 
-/// Import of an MJCF file, or its messages.
+/// Import of an MJCF file with its joints at some positions.
 fn read(text: &str, home: &[(&str, f64)]) -> Result<String, String> {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("robot.xml");
-    std::fs::write(&path, text).expect("a file");
     let options = Options {
         home: home
             .iter()
@@ -16,13 +13,30 @@ fn read(text: &str, home: &[(&str, f64)]) -> Result<String, String> {
             .collect(),
         ..Options::default()
     };
-    import(&path, &options)
+    import_text(text, &options)
+}
+
+/// Import of an MJCF file, or its messages.
+fn import_text(text: &str, options: &Options) -> Result<String, String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("robot.xml");
+    std::fs::write(&path, text).expect("a file");
+    import(&path, options)
         .map(|own| own.text)
         .map_err(|errors| {
             let each = errors.0.iter();
             each.map(|(source, errors)| errors.render_plain(source))
                 .collect()
         })
+}
+
+/// Import of an MJCF file with the coordinates of a list.
+fn read_with(text: &str, coordinates: Option<&str>) -> Result<String, String> {
+    let options = Options {
+        coordinates: coordinates.map(|list| list.split(',').map(str::to_owned).collect()),
+        ..Options::default()
+    };
+    import_text(text, &options)
 }
 
 #[track_caller]
@@ -34,7 +48,7 @@ fn refused(text: &str, parts: &[&str]) {
 }
 
 #[test]
-fn joints_solvable_only_together_are_rejected_by_name() {
+fn a_link_on_three_rods_makes_a_joint_dependent() {
     // Stephenson's six-bar on a link of its longest path: three rods hold the plate.
     let text = format!(
         r#"<mujoco model="triad"><worldbody>
@@ -47,8 +61,23 @@ fn joints_solvable_only_together_are_rejected_by_name() {
 <connect name="second" body1="rocker" body2="plate" anchor="0 0 .13"/></equality>
 <actuator><motor joint="crank"/></actuator></mujoco>"#
     );
-    let joints = "with `crank` no chain determines `rod`, `plate`, `link`, `rocker`, `first` and `second`, which can only be solved together";
-    refused(&text, &[joints, "robot.xml:3:", "fix one of these joints"]);
+    // The motor is the coordinate, or the joint that is named.
+    for named in [None, Some("rocker"), Some("rod")] {
+        let own = read_with(&text, named).expect("a robot");
+        let joints = own
+            .split("[[leg.")
+            .filter(|joint| joint.contains("dependent = true"));
+        let joints: Vec<&str> = joints.collect();
+        assert!(!joints.is_empty(), "{own}");
+        let coordinate = named.unwrap_or("crank");
+        let name = format!("name = \"{coordinate}\"");
+        assert!(joints.iter().all(|joint| !joint.contains(&name)), "{own}");
+        let skeleton = own.split("[leg.").next().unwrap_or_default();
+        assert!(skeleton.contains(&name), "{own}");
+    }
+    // Two coordinates are one too many.
+    let message = read_with(&text, Some("rod,link")).expect_err("a file that is rejected");
+    assert!(message.contains("leave `--coordinates` out"), "{message}");
 }
 
 #[test]

@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, Vector3};
 pub(crate) type Tree = Vec<(usize, usize)>;
 
 /// Largest number of dependent joints of a description.
-pub(super) const MOST: usize = 4;
+pub(super) const MOST: usize = 8;
 /// Condition number of the independent rates above which they are taken for dependent.
 const SINGULAR: f64 = 1e4;
 
@@ -32,16 +32,14 @@ pub(super) fn surplus(network: &Network<'_>, skeleton: &[(usize, usize)]) -> usi
 
 /// Edges of a skeleton that depend on the others; `None` if too few can be chosen.
 ///
-/// Independent are preferred edges, then motors, then others in order.
+/// Independent are the required edges, then motors, then others in order.
 pub(super) fn choose(
     network: &Network<'_>,
     skeleton: &[(usize, usize)],
-    preferred: Option<&[usize]>,
+    required: &[usize],
 ) -> Option<Vec<usize>> {
-    let order = |&(edge, _): &(usize, usize)| {
-        let is_named = preferred.is_some_and(|names| names.contains(&edge));
-        (!is_named, !is_driven(network, edge))
-    };
+    let order =
+        |&(edge, _): &(usize, usize)| (!required.contains(&edge), !is_driven(network, edge));
     let mut ordered = skeleton.to_vec();
     // Stable, so that ties keep the order of the skeleton.
     ordered.sort_by_key(order);
@@ -70,7 +68,8 @@ pub(super) fn choose(
         dependent.push(step.0);
     }
     let count: usize = skeleton_freedoms(network, &independent).iter().sum();
-    (count == network.mobility).then_some(dependent)
+    let is_independent = |edge: &usize| !dependent.contains(edge);
+    (count == network.mobility && required.iter().all(is_independent)).then_some(dependent)
 }
 
 /// Whether an edge is a joint with a motor.

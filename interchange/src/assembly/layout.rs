@@ -98,10 +98,10 @@ pub(crate) fn exists(network: &mut Network<'_>) -> bool {
 /// Searches with the wanted edges as coordinates, or with each kind of coordinates in turn.
 fn search_all(network: &mut Network<'_>, wanted: Option<Vec<usize>>) -> Result<Layout, Failure> {
     let is_free = wanted.is_none() && !network.model.closures.is_empty();
-    if is_free && let Ok(found) = search(network, Some(driven(network)), 0) {
+    if is_free && let Ok(found) = search(network, Some(driven(network)), DependentJoints::NONE) {
         return Ok(found);
     }
-    let failure = match search(network, wanted, 0) {
+    let failure = match search(network, wanted, DependentJoints::NONE) {
         Ok(found) => return Ok(found),
         Err(failure) => failure,
     };
@@ -113,7 +113,7 @@ fn search_all(network: &mut Network<'_>, wanted: Option<Vec<usize>>) -> Result<L
     for platform in candidates {
         network.add_platform(platform);
         let edge = network.edges.len() - 1;
-        match search(network, Some(vec![edge]), 0) {
+        match search(network, Some(vec![edge]), DependentJoints::NONE) {
             Ok(found) => return Ok(found),
             Err(_) => network.remove_platform(),
         }
@@ -126,9 +126,14 @@ fn with_dependent(network: &Network<'_>, wanted: Option<&[usize]>) -> Option<Lay
     if network.model.closures.is_empty() || network.mobility == 0 {
         return None;
     }
-    (1..=coordinates::MOST).find_map(|dependent| {
+    (1..=coordinates::MOST).find_map(|count| {
+        let dependent = DependentJoints {
+            count,
+            independent: wanted.unwrap_or_default(),
+        };
         let mut found = search(network, None, dependent).ok()?;
-        found.dependent = coordinates::choose(network, &found.coordinates(), wanted)?;
+        let independent = dependent.independent;
+        found.dependent = coordinates::choose(network, &found.coordinates(), independent)?;
         Some(found)
     })
 }
@@ -144,15 +149,12 @@ fn driven(network: &Network<'_>) -> Vec<usize> {
 }
 
 /// Searches skeleton and chains whose coordinates are some of the wanted edges, if given.
-///
-/// The chains determine so many `dependent` joints of the skeleton.
 fn search(
     network: &Network<'_>,
     wanted: Option<Vec<usize>>,
-    dependent: usize,
+    dependent: DependentJoints<'_>,
 ) -> Result<Layout, Failure> {
-    let mut search = Search::new(network, wanted);
-    search.dependent = dependent;
+    let mut search = Search::new(network, wanted, dependent);
     search.grow(PartialLayout::start(network));
     if search.best.is_none() {
         search.kept.fill(false);
@@ -259,14 +261,29 @@ impl PartialLayout {
     }
 }
 
+/// Joints of skeleton and branches that the chains determine.
+#[derive(Debug, Clone, Copy)]
+struct DependentJoints<'s> {
+    /// Their number.
+    count: usize,
+    /// Edges that have to be independent coordinates.
+    independent: &'s [usize],
+}
+
+impl DependentJoints<'_> {
+    const NONE: Self = Self {
+        count: 0,
+        independent: &[],
+    };
+}
+
 struct Search<'s, 'm> {
     network: &'s Network<'m>,
     kept: Vec<bool>,
     /// Whether bodies of chains may carry branches.
     may_branch: bool,
     wanted: Option<Vec<usize>>,
-    /// Number of joints of the skeleton that chains determine.
-    dependent: usize,
+    dependent: DependentJoints<'s>,
     best: Option<(usize, Layout)>,
     furthest: Furthest,
     tries: usize,
@@ -275,8 +292,12 @@ struct Search<'s, 'm> {
 }
 
 impl<'s, 'm> Search<'s, 'm> {
-    /// Search before its first step, without dependent joints.
-    fn new(network: &'s Network<'m>, wanted: Option<Vec<usize>>) -> Self {
+    /// Search before its first step.
+    fn new(
+        network: &'s Network<'m>,
+        wanted: Option<Vec<usize>>,
+        dependent: DependentJoints<'s>,
+    ) -> Self {
         Self {
             network,
             // Groups that alone connect others to the ground must be part of the skeleton, because
@@ -284,7 +305,7 @@ impl<'s, 'm> Search<'s, 'm> {
             kept: network.blocks.is_cut.clone(),
             may_branch: false,
             wanted,
-            dependent: 0,
+            dependent,
             best: None,
             furthest: Furthest::default(),
             tries: 0,
@@ -304,7 +325,7 @@ impl<'s, 'm> Search<'s, 'm> {
                 solved: &partial.solved,
                 kept: &self.kept,
                 used: &partial.used,
-                needs_all: self.dependent > 0,
+                needs_all: self.dependent.count > 0,
             };
             let (ear, paths) = cheapest(self.network, known);
             self.paths += paths;
@@ -342,7 +363,7 @@ impl<'s, 'm> Search<'s, 'm> {
             let mut next = partial.clone();
             next.push(edge, from, to);
             if !self.network.model.closures.is_empty()
-                && surplus(self.network, &next.layout().coordinates()) > self.dependent
+                && surplus(self.network, &next.layout().coordinates()) > self.dependent.count
             {
                 continue;
             }
@@ -388,12 +409,14 @@ impl<'s, 'm> Search<'s, 'm> {
 
     fn finish(&mut self, partial: PartialLayout) {
         let layout = partial.layout();
-        let coordinates: usize = skeleton_freedoms(self.network, &layout.coordinates())
-            .iter()
-            .sum();
+        let all = layout.coordinates();
+        let coordinates: usize = skeleton_freedoms(self.network, &all).iter().sum();
+        let DependentJoints { count, independent } = self.dependent;
+        let is_there = |edge: &usize| all.iter().any(|(own, _)| own == edge);
         // With dependent joints, a constraint that is left out would not determine them.
-        let is_complete = coordinates == self.network.mobility + self.dependent
-            && (self.dependent == 0 || layout.redundant.is_empty());
+        let is_complete = coordinates == self.network.mobility + count
+            && (count == 0 || layout.redundant.is_empty())
+            && independent.iter().all(is_there);
         if is_complete && keeps_couplings(self.network, &layout) {
             self.best = Some((partial.cost, layout));
         }

@@ -80,10 +80,7 @@ pub(crate) struct Known<'s> {
 }
 
 /// Cheapest chain between known groups, and the number of explored paths.
-pub(crate) fn cheapest(
-    network: &Network<'_>,
-    known: Known<'_>,
-) -> (Option<SolvableChain>, usize) {
+pub(crate) fn cheapest(network: &Network<'_>, known: Known<'_>) -> (Option<SolvableChain>, usize) {
     let mut best: Option<SolvableChain> = None;
     let mut paths = 0;
     for start in (0..known.solved.len()).filter(|&group| known.solved[group]) {

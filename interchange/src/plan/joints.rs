@@ -33,11 +33,7 @@ pub(super) struct Draft<'d, 'm> {
 }
 
 impl<'d, 'm> Draft<'d, 'm> {
-    pub(super) fn new(
-        files: &'d Files,
-        network: &'d Network<'m>,
-        dependent: &'d [usize],
-    ) -> Self {
+    pub(super) fn new(files: &'d Files, network: &'d Network<'m>, dependent: &'d [usize]) -> Self {
         Self {
             files,
             network,

@@ -198,9 +198,7 @@ fn independent(network: &Network<'_>, layout: &Layout) -> String {
             1 => "the other is the independent coordinate".to_owned(),
             count => format!("the others{branches} are the {count} independent coordinates"),
         };
-        return format!(
-            "The skeleton: the chains determine its `dependent` joints; {others}."
-        );
+        return format!("The skeleton: the chains determine its `dependent` joints; {others}.");
     }
     if network.mobility == 1 {
         return "The skeleton: its joint is the independent coordinate, which determines the chains.".to_owned();
