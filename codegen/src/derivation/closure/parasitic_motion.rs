@@ -127,7 +127,7 @@ impl<'a> ParasiticMotion<'a> {
         self.independent.iter().enumerate().map(motion).collect()
     }
 
-    /// Columns of D for a platform: velocity of the platform's origin and angular velocity per independent rate.
+    /// Columns of D for a platform: velocity of its origin and angular velocity per independent rate.
     pub(crate) fn partials(&self, arena: &'a Arena) -> Vec<SpatialMotion<'a>> {
         let rows = self.platform_jacobian(arena);
         let part = |column: usize, first: usize| {

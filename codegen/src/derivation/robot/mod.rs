@@ -210,7 +210,7 @@ impl<'a> Robot<'a> {
             let (velocity, acceleration) = self.free_motion(twist, acceleration);
             p.motion(&velocity, &acceleration)
         });
-        let (in_pose, growth) = self.skeleton_motion(twist, acceleration);
+        let (pose_rates, pose_accelerations) = self.skeleton_motion(twist, acceleration);
         let gravity = Vector3::constant(self.arena, self.mechanism.gravity);
         let accelerations = Accelerations::new(acceleration);
         let platform_body = |mount: &Mount<'a>| {
@@ -253,8 +253,8 @@ impl<'a> Robot<'a> {
                 _ => {
                     let range = self.mechanism.coordinate_range(motion.u.len());
                     LegRates {
-                        u: in_pose[range.clone()].to_vec(),
-                        u_dot: growth[range].to_vec(),
+                        u: pose_rates[range.clone()].to_vec(),
+                        u_dot: pose_accelerations[range].to_vec(),
                     }
                 }
             };
