@@ -8,13 +8,13 @@
 //! such skeleton exists, chains may carry branches, whose joints are coordinates as well.
 //!
 //! If no chains solve the robot one after the other, the skeleton may have joints that they
-//! determine together (`coordinates.rs`), as few as possible.
+//! determine together (`coordinates.rs`), in exchange for chains of fewer joints.
 
 use super::{
     coordinates::{self, Tree, skeleton_freedoms, surplus},
     network::{Network, Origin},
     platform_search::platforms,
-    solvable_chains::{Known, SolvableChain, cheapest, follows},
+    solvable_chains::{Known, SolvableChain, UNKNOWNS, cheapest, follows},
     unsolved::{self, Failure, Furthest},
 };
 use crate::{files::Files, options::Options};
@@ -39,6 +39,8 @@ pub(crate) struct Layout {
     pub(crate) dependent: Vec<usize>,
     /// Redundant edges: the others imply their constraints.
     pub(crate) redundant: Vec<usize>,
+    /// Approximate cost of solving the chains.
+    cost: usize,
 }
 
 impl Layout {
@@ -121,20 +123,27 @@ fn search_all(network: &mut Network<'_>, wanted: Option<Vec<usize>>) -> Result<L
     Err(failure)
 }
 
-/// Searches with as few dependent joints as possible; the wanted edges are independent ones.
+/// Searches with dependent joints and chains of few joints; the wanted edges are independent ones.
+///
+/// A chain of several joints is singular where it is stretched, even if the robot is not there. A
+/// rod between two bodies of the skeleton is never singular.
 fn with_dependent(network: &Network<'_>, wanted: Option<&[usize]>) -> Option<Layout> {
     if network.model.closures.is_empty() || network.mobility == 0 {
         return None;
     }
-    (1..=coordinates::MOST).find_map(|count| {
-        let dependent = DependentJoints {
-            count,
-            independent: wanted.unwrap_or_default(),
-        };
-        let mut found = search(network, None, dependent).ok()?;
-        let independent = dependent.independent;
-        found.dependent = coordinates::choose(network, &found.coordinates(), independent)?;
-        Some(found)
+    let independent = wanted.unwrap_or_default();
+    coordinates::CHAIN_JOINTS.into_iter().find_map(|most| {
+        let found = (1..=coordinates::MOST).filter_map(|count| {
+            let dependent = DependentJoints {
+                count,
+                most,
+                independent,
+            };
+            let mut found = search(network, None, dependent).ok()?;
+            found.dependent = coordinates::choose(network, &found.coordinates(), independent)?;
+            Some(found)
+        });
+        found.min_by_key(|layout| layout.cost)
     })
 }
 
@@ -257,6 +266,7 @@ impl PartialLayout {
             pieces: self.pieces.clone(),
             dependent: Vec::new(),
             redundant: unused.map(|(edge, _)| edge).collect(),
+            cost: self.cost,
         }
     }
 }
@@ -266,6 +276,8 @@ impl PartialLayout {
 struct DependentJoints<'s> {
     /// Their number.
     count: usize,
+    /// Largest number of unknown joints of a chain.
+    most: usize,
     /// Edges that have to be independent coordinates.
     independent: &'s [usize],
 }
@@ -273,6 +285,7 @@ struct DependentJoints<'s> {
 impl DependentJoints<'_> {
     const NONE: Self = Self {
         count: 0,
+        most: UNKNOWNS,
         independent: &[],
     };
 }
@@ -326,6 +339,7 @@ impl<'s, 'm> Search<'s, 'm> {
                 kept: &self.kept,
                 used: &partial.used,
                 needs_all: self.dependent.count > 0,
+                most: self.dependent.most,
             };
             let (ear, paths) = cheapest(self.network, known);
             self.paths += paths;
@@ -411,7 +425,9 @@ impl<'s, 'm> Search<'s, 'm> {
         let layout = partial.layout();
         let all = layout.coordinates();
         let coordinates: usize = skeleton_freedoms(self.network, &all).iter().sum();
-        let DependentJoints { count, independent } = self.dependent;
+        let DependentJoints {
+            count, independent, ..
+        } = self.dependent;
         let is_there = |edge: &usize| all.iter().any(|(own, _)| own == edge);
         // With dependent joints, a constraint that is left out would not determine them.
         let is_complete = coordinates == self.network.mobility + count

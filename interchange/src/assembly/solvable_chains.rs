@@ -39,7 +39,7 @@ impl SolvableChain {
 }
 
 /// Largest number of unknowns of a chain.
-const UNKNOWNS: usize = 6;
+pub(super) const UNKNOWNS: usize = 6;
 /// Condition number above which a chain counts as singular.
 const SINGULAR: f64 = 1e6;
 /// Largest number of paths explored from one group.
@@ -77,6 +77,8 @@ pub(crate) struct Known<'s> {
     pub(crate) used: &'s [bool],
     /// Whether free joints between known groups are chains, too, since they block directions.
     pub(crate) needs_all: bool,
+    /// Largest number of unknown joints of a chain.
+    pub(crate) most: usize,
 }
 
 /// Cheapest chain between known groups, and the number of explored paths.
@@ -162,6 +164,7 @@ impl Search<'_, '_> {
                 Ending::Rigid => edge.kind != JointType::Ball,
             };
             let limit = if ending == Ending::Point { 3 } else { UNKNOWNS };
+            let limit = limit.min(self.known.most);
             if !ends || unknowns == 0 || unknowns > limit {
                 continue;
             }
