@@ -72,7 +72,7 @@ fn a_link_on_three_rods_makes_a_joint_dependent() {
         let coordinate = named.unwrap_or("crank");
         let name = format!("name = \"{coordinate}\"");
         assert!(joints.iter().all(|joint| !joint.contains(&name)), "{own}");
-        let skeleton = own.split("[leg.").next().unwrap_or_default();
+        let skeleton = own.split("\n[leg.").next().unwrap_or_default();
         assert!(skeleton.contains(&name), "{own}");
     }
     // Two coordinates are one too many.

@@ -68,6 +68,9 @@ const TRIES: usize = 3000;
 /// Largest number of paths that all searches for chains explore together.
 const PATHS: usize = 3_000_000;
 
+/// Part of both limits for each of the searches with dependent joints, of which there are many.
+const SHARE: usize = 10;
+
 /// Finds skeleton and chains; `None` after an error.
 ///
 /// Preferred are motors as coordinates, then the joints with the cheapest chains, then the
@@ -128,7 +131,15 @@ fn search_all(network: &mut Network<'_>, wanted: Option<Vec<usize>>) -> Result<L
 /// A chain of several joints is singular where it is stretched, even if the robot is not there. A
 /// rod between two bodies of the skeleton is never singular.
 fn with_dependent(network: &Network<'_>, wanted: Option<&[usize]>) -> Option<Layout> {
-    if network.model.closures.is_empty() || network.mobility == 0 {
+    let is_held = |edge: usize| {
+        matches!(network.edges[edge].origin, Origin::Joint(_)) && network.is_held(edge)
+    };
+    // Folded loops need another home, and joints that closures hold are no coordinates.
+    if network.model.closures.is_empty()
+        || network.mobility == 0
+        || network.has_singular_home()
+        || (0..network.edges.len()).any(is_held)
+    {
         return None;
     }
     let independent = wanted.unwrap_or_default();
@@ -328,7 +339,8 @@ impl<'s, 'm> Search<'s, 'm> {
 
     /// Whether the search has used up its extensions or paths.
     fn is_exhausted(&self) -> bool {
-        self.tries > TRIES || self.paths > PATHS
+        let share = if self.dependent.count > 0 { SHARE } else { 1 };
+        self.tries > TRIES / share || self.paths > PATHS / share
     }
 
     fn grow(&mut self, mut partial: PartialLayout) {

@@ -15,6 +15,9 @@ use crate::{
 use nalgebra::{DMatrix, DVector, Point3, Vector3};
 use std::collections::BTreeMap;
 
+/// Largest velocity of a joint that counts as held, relative to unit motions of the robot.
+const STILL: f64 = 1e-9;
+
 /// A group of bodies that are fixed together.
 #[derive(Debug, Clone)]
 pub(crate) struct Group {
@@ -130,6 +133,13 @@ impl<'m> Network<'m> {
     pub(super) fn has_singular_home(&self) -> bool {
         let at_home = self.twists.first().and_then(|twists| twists.first());
         at_home.is_some_and(|basis| basis.ncols() > self.mobility)
+    }
+
+    /// Whether the closures hold an edge's joint in place, in all sampled configurations.
+    pub(super) fn is_held(&self, edge: usize) -> bool {
+        let [a, b] = self.edges[edge].groups;
+        let mut samples = self.twists.iter();
+        samples.all(|twists| (&twists[a] - &twists[b]).amax() < STILL)
     }
 
     /// Names of the rods with an idle spin.

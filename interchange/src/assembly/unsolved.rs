@@ -7,9 +7,6 @@ use crate::{
     model::JointType,
 };
 
-/// Largest velocity of a joint that counts as held, relative to unit motions of the robot.
-const STILL: f64 = 1e-9;
-
 /// The partial layout of a search that determines most bodies.
 #[derive(Debug, Default)]
 pub(super) struct Furthest {
@@ -128,11 +125,7 @@ fn report_rigid(files: &Files, network: &Network<'_>, open: &[usize]) {
 
 /// Reports joints that the closures hold in place although others move; `None` if there are none.
 fn report_held(files: &Files, network: &Network<'_>, open: &[usize]) -> Option<()> {
-    let is_held = |&&edge: &&usize| {
-        let [a, b] = network.edges[edge].groups;
-        let mut samples = network.twists.iter();
-        samples.all(|twists| (&twists[a] - &twists[b]).amax() < STILL)
-    };
+    let is_held = |edge: &&usize| network.is_held(**edge);
     let joint = |&edge: &usize| match network.edges[edge].origin {
         Origin::Joint(joint) => Some(&network.model.joints[joint]),
         Origin::Closure(_) | Origin::Platform => None,
