@@ -18,7 +18,7 @@ pub(crate) type Tree = Vec<(usize, usize)>;
 
 /// Largest number of dependent joints of a description.
 pub(super) const MOST: usize = 8;
-/// Numbers of unknown joints up to which chains are tried beside dependent joints, in order.
+/// Largest numbers of unknown joints of a chain in layouts with dependent joints, tried in order.
 ///
 /// One suffices for rods in a plane, two for rods in space and legs of a 3-RPS.
 pub(super) const CHAIN_JOINTS: [usize; 4] = [1, 2, 3, 6];
