@@ -30,8 +30,8 @@ pub struct Workspace<'a, T = f64> {
 /// `step` are the displacements of the joints whose indices in the pose are given. Newton's method
 /// finds the others. `evaluate` writes the closure errors of a pose, and their derivatives with
 /// respect to all joints of the pose (row-major). Long displacements are divided, so that the
-/// assembly mode stays. If the iteration does not converge, the pose is not closed and functions
-/// reject it.
+/// assembly mode stays. If the iteration does not converge, the dependent joints have the smallest
+/// errors found; functions reject the pose if it is not closed.
 pub fn displace<T: Float>(
     pose: &mut [T],
     step: &[T],
@@ -44,7 +44,7 @@ pub fn displace<T: Float>(
         jacobian,
         square,
     } = workspace;
-    let longest = step.iter().fold(T::ZERO, |m, step| m.max(step.abs()));
+    let longest = largest(step);
     let mut parts = 1;
     while parts < PARTS && longest > T::of(LONGEST_PART * f64::from(parts)) {
         parts += 1;
@@ -67,6 +67,9 @@ pub fn displace<T: Float>(
 }
 
 /// Corrects the dependent joints of a pose until the chains close; whether the iteration converges.
+///
+/// A step that does not reduce the largest error is halved, so that a pose beside a dead centre is
+/// not left for one that is less closed.
 fn close<T: Float>(
     pose: &mut [T],
     independent: &[usize],
@@ -81,9 +84,27 @@ fn close<T: Float>(
     let joints = pose.len();
     let count = joints.saturating_sub(independent.len());
     let dependent = || (0..joints).filter(|at| !independent.contains(at));
+    // Takes a part of the last step back, whose negative rest stays at the start of `square`.
+    let take_back = |pose: &mut [T], square: &mut [T], part: f64| {
+        for (at, step) in dependent().zip(square) {
+            if let Some(joint) = pose.get_mut(at) {
+                *joint -= *step * T::of(part);
+            }
+            *step -= *step * T::of(part);
+        }
+    };
+    let mut before: Option<T> = None;
     for _ in 0..STEPS {
-        if evaluate(pose, errors, jacobian).is_err() {
-            return false;
+        let is_evaluated = evaluate(pose, errors, jacobian).is_ok();
+        let size = largest(errors);
+        let is_closer = is_evaluated && before.is_none_or(|before| size < before);
+        match before {
+            None if !is_closer => return false,
+            Some(_) if !is_closer => {
+                take_back(pose, square, 0.5);
+                continue;
+            }
+            _ => before = Some(size),
         }
         let rows = square.chunks_exact_mut(count.max(1));
         for (row, of_pose) in rows.zip(jacobian.chunks_exact(joints.max(1))) {
@@ -95,23 +116,31 @@ fn close<T: Float>(
         if errors.iter().any(|error| !error.is_finite()) {
             return false;
         }
-        let largest = errors.iter().fold(T::ZERO, |m, e| m.max(e.abs()));
-        if largest < T::of(T::LIMITS.joint_step) {
+        let longest = largest(errors);
+        if longest < T::of(T::LIMITS.joint_step) {
             return true;
         }
-        let longest = T::of(LONGEST_STEP);
-        let scale = if largest > longest {
-            longest / largest
+        let scale = if longest > T::of(LONGEST_STEP) {
+            T::of(LONGEST_STEP) / longest
         } else {
             T::of(1.0)
         };
-        for (at, error) in dependent().zip(errors.iter()) {
+        for ((at, error), step) in dependent().zip(errors.iter()).zip(square.iter_mut()) {
+            *step = -scale * *error;
             if let Some(joint) = pose.get_mut(at) {
-                *joint -= scale * *error;
+                *joint += *step;
             }
         }
     }
+    take_back(pose, square, 1.0);
     false
+}
+
+/// Largest magnitude of the numbers.
+fn largest<T: Float>(numbers: &[T]) -> T {
+    numbers
+        .iter()
+        .fold(T::ZERO, |m, number| m.max(number.abs()))
 }
 
 #[cfg(test)]
@@ -145,5 +174,24 @@ mod tests {
         let mut pose = [0.0, 1.0];
         moved(&mut pose, 2.0);
         assert!(pose.iter().all(|number| number.is_finite()), "{pose:?}");
+    }
+
+    /// The unit circle ends where the abscissa is 1. A pose just beyond it has an error that no
+    /// ordinate removes.
+    #[test]
+    fn poses_beside_a_dead_centre_do_not_become_less_closed() {
+        for beyond in [1e-12, 1e-9, 1e-7] {
+            for height in [1e-4, 1e-6, 1e-8] {
+                let mut pose = [1.0 + beyond, height];
+                let error = |pose: &[f64; 2]| pose[0] * pose[0] + pose[1] * pose[1] - 1.0;
+                let before = error(&pose).abs();
+                moved(&mut pose, 0.0);
+                let after = error(&pose).abs();
+                assert!(
+                    after <= before * (1.0 + 1e-9),
+                    "{before:e} became {after:e}"
+                );
+            }
+        }
     }
 }

@@ -1,14 +1,41 @@
-/* Corrects the dependent joints of a pose by Newton's method until the chains close; 0 where they do not. */
+/* Largest magnitude of the errors. */
+static double rob_largest(const double *errors)
+{
+    double largest = 0.0;
+    for (int i = 0; i < ROB_DEPENDENT; i++) {
+        largest = (fabs(errors[i]) > largest) ? fabs(errors[i]) : largest;
+    }
+    return largest;
+}
+
+/* Corrects the dependent joints of a pose by Newton's method until the chains close; 0 if they do not. A step that does
+ * not reduce the largest error is halved, so that a pose beside a dead centre is not left for one that is less closed. */
 static int rob_close(double *pose)
 {
+    double step[ROB_DEPENDENT];
+    double before = HUGE_VAL;
+    for (int i = 0; i < ROB_DEPENDENT; i++) {
+        step[i] = 0.0;
+    }
     for (int count = 0; count < 40; count++) {
         double errors[ROB_DEPENDENT];
         double jacobian[ROB_DEPENDENT * ROB_POSE];
         double square[ROB_DEPENDENT][ROB_DEPENDENT];
-        double largest = 0.0;
+        double longest = 0.0;
+        double size = HUGE_VAL;
         double scale;
-        if (rob_pose_error(pose, errors) != ROB_OK) {
-            return 0;
+        if (rob_pose_error(pose, errors) == ROB_OK) {
+            size = rob_largest(errors);
+        }
+        if (!(size < before)) {
+            if (!isfinite(before)) {
+                return 0;
+            }
+            for (int i = 0; i < ROB_DEPENDENT; i++) {
+                step[i] *= 0.5;
+                pose[rob_dependent[i]] -= step[i];
+            }
+            continue;
         }
         if (rob_pose_error_jacobian(pose, jacobian) != ROB_OK) {
             return 0;
@@ -25,22 +52,27 @@ static int rob_close(double *pose)
             if (!isfinite(errors[i])) {
                 return 0;
             }
-            largest = (fabs(errors[i]) > largest) ? fabs(errors[i]) : largest;
         }
-        if (largest < LIMIT_JOINT_STEP) {
+        longest = rob_largest(errors);
+        if (longest < LIMIT_JOINT_STEP) {
             return 1;
         }
-        scale = (largest > 0.5) ? (0.5 / largest) : 1.0;
+        scale = (longest > 0.5) ? (0.5 / longest) : 1.0;
         for (int i = 0; i < ROB_DEPENDENT; i++) {
-            pose[rob_dependent[i]] -= scale * errors[i];
+            step[i] = -scale * errors[i];
+            pose[rob_dependent[i]] += step[i];
         }
+        before = size;
+    }
+    for (int i = 0; i < ROB_DEPENDENT; i++) {
+        pose[rob_dependent[i]] -= step[i];
     }
     return 0;
 }
 
 /* Moves the independent joints of a pose by the step; the others are found by Newton's method so that the chains
- * close. Long steps are divided, so that the assembly mode stays. Where the chains do not close, the pose stays on the
- * way: functions refuse it. */
+ * close. Long steps are divided, so that the assembly mode stays. If the chains do not close, functions reject the
+ * pose. */
 static void rob_displace(double *pose, const double *step)
 {
     double longest = 0.0;

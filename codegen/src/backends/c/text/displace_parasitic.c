@@ -1,9 +1,31 @@
+/* Largest magnitude of the errors. */
+static double rob_largest(const double *errors)
+{
+    double largest = 0.0;
+    for (int i = 0; i < ROB_BLOCKED; i++) {
+        largest = (fabs(errors[i]) > largest) ? fabs(errors[i]) : largest;
+    }
+    return largest;
+}
+
+/* A pose after one displacement from the start. */
+static void rob_place(double *pose, const double *start, const double *whole)
+{
+    for (int i = 0; i < ROB_POSE; i++) {
+        pose[i] = start[i];
+    }
+    rob_displace_freely(pose, whole);
+}
+
 /* Moves a pose by one displacement, whose independent components are the step; the others are found by Newton's
- * method so that the legs close. Where they do not, the pose stays on the way: functions refuse it. */
+ * method so that the legs close. A step that does not reduce the largest error is halved. If the legs do not close,
+ * functions reject the pose. */
 static void rob_displace(double *pose, const double *step)
 {
     double whole[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+    double change[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
     double start[ROB_POSE];
+    double before = HUGE_VAL;
     for (int i = 0; i < ROB_POSE; i++) {
         start[i] = pose[i];
     }
@@ -14,14 +36,22 @@ static void rob_displace(double *pose, const double *step)
         double errors[ROB_BLOCKED];
         double jacobian[ROB_BLOCKED * 6];
         double square[ROB_BLOCKED][ROB_BLOCKED];
-        double largest = 0.0;
+        double longest = 0.0;
+        double size = HUGE_VAL;
         double scale;
-        for (int i = 0; i < ROB_POSE; i++) {
-            pose[i] = start[i];
+        rob_place(pose, start, whole);
+        if (rob_blocked_error(pose, errors) == ROB_OK) {
+            size = rob_largest(errors);
         }
-        rob_displace_freely(pose, whole);
-        if (rob_blocked_error(pose, errors) != ROB_OK) {
-            return;
+        if (!(size < before)) {
+            if (!isfinite(before)) {
+                return;
+            }
+            for (int i = 0; i < 6; i++) {
+                change[i] *= 0.5;
+                whole[i] -= change[i];
+            }
+            continue;
         }
         if (rob_blocked_jacobian(pose, jacobian) != ROB_OK) {
             return;
@@ -38,14 +68,20 @@ static void rob_displace(double *pose, const double *step)
             if (!isfinite(errors[i])) {
                 return;
             }
-            largest = (fabs(errors[i]) > largest) ? fabs(errors[i]) : largest;
         }
-        if (largest < LIMIT_JOINT_STEP) {
+        longest = rob_largest(errors);
+        if (longest < LIMIT_JOINT_STEP) {
             return;
         }
-        scale = (largest > 0.5) ? (0.5 / largest) : 1.0;
+        scale = (longest > 0.5) ? (0.5 / longest) : 1.0;
         for (int i = 0; i < ROB_BLOCKED; i++) {
-            whole[rob_dependent[i]] -= scale * errors[i];
+            change[rob_dependent[i]] = -scale * errors[i];
+            whole[rob_dependent[i]] += change[rob_dependent[i]];
         }
+        before = size;
     }
+    for (int i = 0; i < 6; i++) {
+        whole[i] -= change[i];
+    }
+    rob_place(pose, start, whole);
 }
