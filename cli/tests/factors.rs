@@ -330,6 +330,69 @@ fn factors_of_payload_runs_identify_the_payload() {
     assert!(by_name(&wrong).iter().all(|(name, ..)| name != "m_payload"));
 }
 
+/// Logs with one payload each and with both distinguish two payloads, also from R factors.
+#[test]
+fn factors_of_runs_with_two_payloads_are_those_of_their_logs() {
+    let text = fs::read_to_string(robot("planar_3rrr.toml")).expect("a robot of the library");
+    let named = text
+        .replace("duration = \"10 s\"", "duration = \"2 s\"")
+        .replace(
+            "name = \"Planar3Rrr\"",
+            "name = \"Two\"\npayloads = [\"A\", \"B\"]",
+        )
+        .replace("_payload = ", "_payload_A = ")
+        .replace(
+            "m_payload_A = 1.0",
+            "m_payload_A = 1.0\nm_payload_B = 0.5\nzz_payload_B = 0.001",
+        );
+    let bench = Bench::new();
+    let mut logs = Vec::new();
+    for (label, payload) in [("A", "\"A\""), ("B", "\"B\""), ("A+B", "[\"A\", \"B\"]")] {
+        let run = format!("payload = {payload}");
+        bench.write("my.toml", &named.replace("payload = true", &run));
+        let log = format!("{}.csv", label.replace('+', "_and_"));
+        bench.good(&["simulate", "my.toml", "--run", "loaded", "-o", &log]);
+        logs.push(format!("{label}={log}"));
+    }
+    let given: Vec<&str> = logs.iter().map(String::as_str).collect();
+    let identify = ["identify", "my.toml", "--payload-data"];
+    let of_logs = by_name(&bench.json(&[&identify[..], &given].concat()));
+    let mass = |name: &str| {
+        let own = of_logs.iter().find(|(own, ..)| own == name);
+        own.map(|(_, value, deviation)| (*value, *deviation))
+            .expect(name)
+    };
+    for (name, truth) in [("m_payload_A", 1.0), ("m_payload_B", 0.5)] {
+        let (value, deviation) = mass(name);
+        assert!(
+            (value - truth).abs() < 4.0 * deviation + 0.02,
+            "{name}: {value}"
+        );
+    }
+    let mut files = Vec::new();
+    for (number, log) in given.iter().enumerate() {
+        let file = format!("{number}.parquet");
+        bench.good(&["factor", "my.toml", "--payload-data", log, "-o", &file]);
+        files.push(file);
+    }
+    let factors: Vec<&str> = files.iter().map(String::as_str).collect();
+    let identify = ["identify", "my.toml", "--factors"];
+    let of_factors = by_name(&bench.json(&[&identify[..], &factors].concat()));
+    assert_eq!(of_logs.len(), of_factors.len());
+    for ((name, value, deviation), (other, factored, _)) in of_logs.iter().zip(&of_factors) {
+        let size = value.abs().max(*deviation);
+        assert!(
+            name == other && (value - factored).abs() <= 1e-11 * size,
+            "{name} {value} and {other} {factored}"
+        );
+    }
+    let refused =
+        |given: &[&str]| bench.bad(&[&["identify", "my.toml", "--payload-data"], given].concat());
+    assert!(refused(&["A+A=A.csv"]).contains("the payload `A` is named twice"));
+    assert!(refused(&["A+C=A.csv"]).contains("there is no payload `C`"));
+    assert!(refused(&["A+B=A_and_B.csv"]).contains("do not distinguish the payloads A, B"));
+}
+
 #[test]
 fn factors_of_another_description_are_reported_with_differences() {
     let bench = five_bar();

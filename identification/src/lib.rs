@@ -111,7 +111,7 @@ pub use online::{OnlineChange, OnlineEstimate};
 pub use online_settings::{ForgettingRule, OnlineSettings};
 pub use overact_logs::{
     Dataset, Error, Gain, Load, Log, Mapping, Periods, Problem, Scales, Time, Variant, called,
-    significant, titled,
+    carried_payloads, significant, titled,
 };
 pub use prior::Prior;
 pub use regression::{

@@ -69,7 +69,11 @@ mod unwrapping;
 pub use display_names::{called, titled, with_joints};
 pub use error::{Column, Error, Problem, suggestion};
 pub use formats::{arrays::Array, parquet_file::write_parquet};
-pub use mapping::{Gain, Mapping, Time, load::Load, scales::Scales};
+pub use mapping::{
+    Gain, Mapping, Time,
+    load::{Load, carried_payloads},
+    scales::Scales,
+};
 pub use period_sums::Periods;
 pub use read::{
     NeededSamples, parts, read, read_arrays, read_bytes, read_runs, runs_of_arrays, runs_of_bytes,

@@ -25,29 +25,37 @@ const PAYLOADS: &str = "payloads = [\"heavy\", \"light\"]\n\n[constants]";
 
 /// The RX90 with two payloads in turn; `unloaded` runs have none.
 fn rx90(unloaded: bool) -> String {
+    let mut runs = vec![HEAVY, LIGHT];
+    if unloaded {
+        runs.insert(0, UNLOADED);
+    }
+    rx90_with(&runs)
+}
+
+const UNLOADED: &str = "false";
+const HEAVY: &str = "\"heavy\"";
+const LIGHT: &str = "\"light\"";
+const BOTH: &str = "[\"heavy\", \"light\"]";
+
+/// The RX90 with runs that carry these payloads.
+fn rx90_with(payloads: &[&str]) -> String {
     let text = text("rx90.toml");
     let runs: Vec<usize> = text
         .match_indices("[[experiment.run]]")
         .map(|(at, _)| at)
         .collect();
     let own = &text[runs[0]..runs[1]];
-    let loaded = |name: &str| {
-        let run = format!("\"with {name}\"\npayload = \"{name}\"");
-        replaced(own, &[("\"identification\"", &run)])
+    let carrying = |(number, payload): (usize, &&str)| {
+        let run = format!("\"run {number}\"\npayload = {payload}");
+        replaced(own, &[("\"identification\"", &run)]) + "\n"
     };
-    let [heavy, light] = ["heavy", "light"].map(loaded);
+    let carrying: String = payloads.iter().enumerate().map(carrying).collect();
     let values = "[experiment.parameters]\nm_payload_heavy = 5\nmx_payload_heavy = 0.25\nmz_payload_heavy = 0.9\n\
                   xx_payload_heavy = 0.18\nyy_payload_heavy = 0.2\nzz_payload_heavy = 0.03\n\
                   m_payload_light = 2\nmy_payload_light = -0.1\nmz_payload_light = 0.3\n\
                   xx_payload_light = 0.06\nyy_payload_light = 0.05\nzz_payload_light = 0.02\n";
     let body = "[[leg.arm.joint]]\nname = \"payload\"\ntype = \"fixed\"\n\n[[place]]";
-    let text = text[..runs[0]].to_owned()
-        + if unloaded { own } else { "" }
-        + &heavy
-        + "\n"
-        + &light
-        + "\n"
-        + &text[runs[1]..];
+    let text = text[..runs[0]].to_owned() + &carrying + &text[runs[1]..];
     replaced(
         &text,
         &[
@@ -160,6 +168,44 @@ fn without_an_unloaded_run_payload_differences_are_identified() {
     );
 }
 
+/// A run with both payloads and one with each alone distinguish them from the robot.
+#[test]
+fn a_run_with_two_payloads_replaces_the_one_without() {
+    let robot = robot(&rx90_with(&[HEAVY, LIGHT, BOTH]));
+    let runs = runs(&robot, &[String::from("validation")]);
+    let label = runs.identified[2].payload_name();
+    assert_eq!(label, Some("heavy+light"));
+    let result = identified(&robot, &runs);
+    check(&result, ["_heavy", "_light"]);
+    for (name, mass) in [("m_payload_heavy", 5.0), ("m_payload_light", 2.0)] {
+        let own = base(&result).iter().find(|one| one.name == name);
+        assert!(
+            (own.expect(name).value / mass - 1.0).abs() < 0.03,
+            "{own:?}"
+        );
+    }
+    let warned = |text: &str| result.warnings.iter().any(|one| one.contains(text));
+    assert!(
+        !warned("differences") && !warned("predicted without"),
+        "{:?}",
+        result.warnings
+    );
+}
+
+#[test]
+fn payloads_that_are_only_carried_together_are_rejected() {
+    for payloads in [[UNLOADED, BOTH], [HEAVY, BOTH], [BOTH, BOTH]] {
+        let robot = robot(&rx90_with(&payloads));
+        let runs = runs(&robot, &[String::from("validation")]);
+        let result = Identifier::new(&robot).data(&runs).run();
+        let error = result.expect_err("no distinction").render(false);
+        assert!(
+            error.contains("do not distinguish the payloads heavy, light"),
+            "{error}"
+        );
+    }
+}
+
 /// The DualV with two payloads.
 fn dualv(more: &str) -> String {
     replaced(
@@ -258,6 +304,17 @@ fn invalid_payload_names_are_located() {
         "payload = true",
     );
     assert!(error.contains("must name one"), "{error}");
+    let list = |names: &str| {
+        let run = format!("payload = [{names}]");
+        output(&[("payload = \"light\"", &run)], &run)
+    };
+    assert!(list("\"light\", \"light\"").contains("listed twice"));
+    assert!(list("\"light\", \"haevy\"").contains("no payload `haevy`"));
+    let error = output(
+        &[("payload = \"light\"", "payload = \"heavy+light\"")],
+        "\"heavy+light\"",
+    );
+    assert!(error.contains("as a list"), "{error}");
     let error = output(&[("payload = \"light\"", "payload = 3")], "payload = 3");
     assert!(error.contains("true or false"), "{error}");
     let twice = [(

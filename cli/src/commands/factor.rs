@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "LOG", required_unless_present = "payload_data")]
     data: Vec<PathBuf>,
     /// Logs of runs with the payload on the platform; `NAME=LOG` if the description names several
-    /// payloads
+    /// payloads, `A+B=LOG` for two at once
     #[arg(long, value_name = "LOG", num_args = 1..)]
     payload_data: Vec<PathBuf>,
     /// Serial number of the robot

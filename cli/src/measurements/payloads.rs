@@ -1,9 +1,10 @@
-//! Payloads of logs on the command line: `NAME=LOG` if a description has several.
+//! Payloads of logs on the command line: `NAME=LOG` if a description has several, `A+B=LOG` for a
+//! run with two of them.
 
 use crate::failure::{Failure, Problem};
 use overact_codegen::diagnostic::Code;
 use overact_codegen::diagnostic::did_you_mean;
-use overact_identification::Log;
+use overact_identification::{Log, carried_payloads};
 use overact_robot::Robot;
 use std::path::{Path, PathBuf};
 
@@ -80,9 +81,16 @@ impl<'a> Payloads<'a> {
         let problem = |one: &GivenLog| {
             let file = one.path.display().to_string();
             let list = self.names.join(", ");
-            match &one.name {
-                Some(name) if self.names.contains(&name.as_str()) => None,
-                Some(name) => {
+            let mut carried = one.name.as_deref().into_iter().flat_map(carried_payloads);
+            let unknown = carried.find(|name| !self.names.contains(name));
+            match (&one.name, unknown) {
+                (Some(label), None) => twice(label).map(|name| {
+                    let message = format!("the payload `{name}` is named twice");
+                    Problem::new(Code::LOG_PAYLOAD, message)
+                        .file(file)
+                        .help("a run carries each payload at most once")
+                }),
+                (_, Some(name)) => {
                     let help = did_you_mean(name, self.names.iter().copied());
                     let help = help.unwrap_or_else(|| {
                         if self.names.is_empty() {
@@ -100,17 +108,19 @@ impl<'a> Payloads<'a> {
                             .help(help),
                     )
                 }
-                None if one.loaded && !self.names.is_empty() => {
+                (None, None) if one.loaded && !self.names.is_empty() => {
                     let message =
                         "the robot's payloads have names, and this run does not name its payload";
-                    let help = format!("write NAME=LOG, the name being one of {list}");
+                    let help = format!(
+                        "write NAME=LOG, the name being one of {list}, or A+B=LOG for a run with two of them"
+                    );
                     Some(
                         Problem::new(Code::LOG_PAYLOAD, message)
                             .file(file)
                             .help(help),
                     )
                 }
-                None => None,
+                (None, None) => None,
             }
         };
         let problems: Vec<Problem> = given.filter_map(problem).collect();
@@ -122,10 +132,18 @@ impl<'a> Payloads<'a> {
     }
 }
 
+/// The first name that a label contains twice.
+fn twice(label: &str) -> Option<&str> {
+    let names: Vec<&str> = carried_payloads(label).collect();
+    let mut all = names.iter().enumerate();
+    all.find_map(|(at, name)| names[..at].contains(name).then_some(*name))
+}
+
 /// Name and file around an equals sign; `None` if the whole is the name of an existing file.
 fn split(path: &Path) -> Option<(&str, &str)> {
     let (name, file) = path.to_str()?.split_once('=')?;
-    let word = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    let is_label = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '+';
+    let word = !name.is_empty() && name.chars().all(is_label);
     (word && !path.exists()).then_some((name, file))
 }
 

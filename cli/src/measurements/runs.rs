@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "LOG", num_args = 1..)]
     data: Vec<PathBuf>,
     /// Logs of runs with the payload on the platform; `NAME=LOG` if the description names several
-    /// payloads
+    /// payloads, `A+B=LOG` for two at once
     #[arg(long, value_name = "LOG", num_args = 1..)]
     payload_data: Vec<PathBuf>,
     /// Logs of validation runs; names of runs if the experiment is virtual [default: the validation

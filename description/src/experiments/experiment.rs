@@ -69,7 +69,7 @@ pub struct Run {
     pub name: Spanned<String>,
     /// Whether the payload is on the platform.
     pub payload: bool,
-    /// Name of the payload, if there are several.
+    /// Name of the payload, if there are several; `A+B` if the run carries two.
     pub payload_name: Option<String>,
     /// Whether the run is validation data: it is only predicted, and not used for estimation.
     pub validation: bool,

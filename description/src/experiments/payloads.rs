@@ -84,22 +84,26 @@ pub(crate) fn help(robot: &Inventory<'_>) -> &'static str {
 }
 
 /// The payload of a run: whether there is one, and its name if payloads have names.
+///
+/// The name of several payloads has plus signs, `A+B`.
 pub(crate) fn of_run(item: &Item<'_, '_>, robot: &Inventory<'_>) -> (bool, Option<String>) {
     let known = || robot.payloads.iter().map(|one| one.value.as_str());
     let list = || known().collect::<Vec<_>>().join(", ");
+    if item.value.is_array() {
+        return of_names(item, robot);
+    }
     if let Some(name) = item.value.as_str() {
         if known().any(|one| one == name) {
             return (true, Some(name.to_owned()));
         }
-        let error = item.error(Code::PAYLOAD, format!("there is no payload `{name}`"));
-        let help = match known().next() {
-            None => String::from(
-                "name the payloads of the robot at the head of the file, payloads = [\"A\", \"B\"], or write payload = true",
-            ),
-            Some(_) => did_you_mean(name, known())
-                .unwrap_or_else(|| format!("its payloads are {}", list())),
-        };
-        item.context.report(error.help(help));
+        report_unknown(
+            item,
+            robot,
+            &Spanned {
+                value: name.to_owned(),
+                span: item.span.clone(),
+            },
+        );
         return (false, None);
     }
     let loaded = item.boolean().unwrap_or(false);
@@ -115,4 +119,44 @@ pub(crate) fn of_run(item: &Item<'_, '_>, robot: &Inventory<'_>) -> (bool, Optio
             .report(error.help(format!("give its name, one of {}", list())));
     }
     (loaded, None)
+}
+
+/// The payloads of a run from a list of their names, `["A", "B"]`.
+fn of_names(item: &Item<'_, '_>, robot: &Inventory<'_>) -> (bool, Option<String>) {
+    let mut names: Vec<String> = Vec::new();
+    for name in item.strings().unwrap_or_default() {
+        if names.contains(&name.value) {
+            let message = format!("the payload `{}` is listed twice", name.value);
+            let error = Diagnostic::new(Code::PAYLOAD, message, name.span);
+            item.context
+                .report(error.help("a run carries each payload at most once"));
+        } else if robot.payloads.iter().any(|one| one.value == name.value) {
+            names.push(name.value);
+        } else {
+            report_unknown(item, robot, &name);
+        }
+    }
+    let label = Some(names.join("+")).filter(|label| !label.is_empty());
+    (label.is_some(), label)
+}
+
+/// Reports a payload that the robot does not have.
+fn report_unknown(item: &Item<'_, '_>, robot: &Inventory<'_>, name: &Spanned<String>) {
+    let known = || robot.payloads.iter().map(|one| one.value.as_str());
+    let (name, span) = (&name.value, name.span.clone());
+    let message = format!("there is no payload `{name}`");
+    let error = Diagnostic::new(Code::PAYLOAD, message, span);
+    let help = match known().next() {
+        None => String::from(
+            "name the payloads of the robot at the head of the file, payloads = [\"A\", \"B\"], or write payload = true",
+        ),
+        Some(_) if name.contains('+') => {
+            String::from("write several payloads as a list, payload = [\"A\", \"B\"]")
+        }
+        Some(_) => did_you_mean(name, known()).unwrap_or_else(|| {
+            let list: Vec<&str> = known().collect();
+            format!("its payloads are {}", list.join(", "))
+        }),
+    };
+    item.context.report(error.help(help));
 }

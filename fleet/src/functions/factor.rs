@@ -21,7 +21,7 @@ use datafusion::{
 };
 use overact::Model;
 use overact_identification::Log;
-use overact_logs::{Array as Column, Time};
+use overact_logs::{Array as Column, Time, carried_payloads};
 use overact_robot::Robot;
 use std::sync::Arc;
 
@@ -151,7 +151,9 @@ impl Rows {
         let names = robot.payloads();
         match self.carried.as_str() {
             "" => Ok(log),
-            own if names.contains(&own) => Ok(log.with_payload_name(own)),
+            own if carried_payloads(own).all(|one| names.contains(&one)) => {
+                Ok(log.with_payload_name(own))
+            }
             "true" if names.is_empty() => {
                 if robot.model().info().payload_parameters.is_empty() {
                     Err("the run carries a payload, but the description has none".to_owned())

@@ -22,7 +22,7 @@ use crate::regression::{
     elimination::{Elimination, eliminate},
     states::random_states,
 };
-use overact_logs::{Error, Log, Problem};
+use overact_logs::{Error, Log, Problem, carried_payloads};
 
 /// A column is dependent if its part outside the kept ones is below this fraction of its norm.
 pub(crate) const RANK_TOLERANCE: f64 = 1e-9;
@@ -42,58 +42,122 @@ impl PayloadUse {
     /// Determines how the runs carry the payload.
     ///
     /// # Errors
-    /// No run, or runs with a payload that the model lacks.
+    /// No run, runs with a payload that the model lacks, or payloads that the runs do not
+    /// distinguish.
     pub(crate) fn of(info: &Info<'_>, runs: &[Log]) -> Result<Self, Error> {
-        if runs.is_empty() {
-            return Err(
-                Problem::new(Code::NOTHING_DETERMINED, "there is no training run")
-                    .help("give at least one log with --data, or runs in [[experiment.run]]")
-                    .into(),
-            );
-        }
-        let loaded = || runs.iter().filter(|log| log.payload());
-        let unnamed = loaded().find(|log| log.payload_name().is_none());
-        let named = loaded().find_map(Log::payload_name);
-        if let (Some(unnamed), Some(named)) = (unnamed, named) {
-            let message = format!(
-                "the run carries a payload without a name, another one the payload `{named}`: they can't be distinguished"
-            );
-            let help = "name the payload of each run";
-            return Err(Problem::new(Code::LOG_PAYLOAD, message)
-                .file(unnamed.name())
-                .help(help)
-                .into());
-        }
-        if !has_payload(info) {
-            let problem = |log: &Log| {
-                Problem::new(
-                    Code::LOG_PAYLOAD,
-                    format!(
-                        "the run carries a payload, but the description of `{}` has none",
-                        info.name
-                    ),
-                )
-                .file(log.name())
-                .help("describe the payload in [platform.payload], or declare the run unloaded")
-            };
-            Error::check(loaded().map(problem).collect())?;
-        }
+        check_payloads(info, runs)?;
         let of_bodies = info
             .payload_parameters
             .iter()
             .any(|one| load_of(one).is_some());
-        let all_loaded = loaded().count() == runs.len();
-        if of_bodies && all_loaded && payload_names(runs).len() > 1 {
+        let labels: Vec<RunPayload<'_>> = runs.iter().map(RunPayload::of).collect();
+        let own = Self::of_labels(&labels)?;
+        if of_bodies && own == Self::Regrouped && payload_names(runs).len() > 1 {
             let message = "all runs carry a payload, and the payloads are on bodies of their own: none of them can be distinguished from its body";
             let help = "record a run without payload, or identify the payloads one by one";
             return Err(Problem::new(Code::LOG_PAYLOAD, message).help(help).into());
         }
-        Ok(match loaded().count() {
-            0 => Self::Absent,
-            count if count == runs.len() => Self::Regrouped,
-            _ => Self::Separate,
-        })
+        Ok(own)
     }
+
+    /// Determines how runs with these labels carry payloads.
+    ///
+    /// The torques of a run are those of the robot and of each carried payload. They are separate if
+    /// the labels, as rows of a 1 for the robot and one for each carried payload, have full rank.
+    ///
+    /// # Errors
+    /// Payloads that the labels do not distinguish from each other, or from the robot.
+    pub(crate) fn of_labels(runs: &[RunPayload<'_>]) -> Result<Self, Error> {
+        let loaded = runs.iter().filter(|run| run.loaded).count();
+        let names = names_of_labels(runs.iter().filter_map(|run| run.label));
+        if loaded == 0 {
+            return Ok(Self::Absent);
+        }
+        if names.is_empty() {
+            let all = loaded == runs.len();
+            return Ok(if all { Self::Regrouped } else { Self::Separate });
+        }
+        let carried = |row: usize, column: usize| match runs.get(row).and_then(|run| run.label) {
+            _ if column == 0 => 1.0,
+            Some(label) if carried_payloads(label).any(|one| one == names[column - 1]) => 1.0,
+            _ => 0.0,
+        };
+        let rows = DMatrix::from_fn(runs.len(), names.len() + 1, carried);
+        if rows.rank(RANK_TOLERANCE) > names.len() {
+            return Ok(Self::Separate);
+        }
+        let mut labels = runs.iter().filter_map(|run| run.label);
+        if loaded == runs.len() && labels.all(|label| carried_payloads(label).count() == 1) {
+            return Ok(Self::Regrouped);
+        }
+        let message = format!(
+            "the runs do not distinguish the payloads {}: each is carried with others only",
+            names.join(", ")
+        );
+        let help = "record a run without payload and one with each payload alone, or describe payloads that are always carried together as one";
+        Err(Problem::new(Code::LOG_PAYLOAD, message).help(help).into())
+    }
+}
+
+/// Payload of a run: whether there is one, and its label if payloads have names.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RunPayload<'a> {
+    /// Whether the run carries a payload.
+    pub(crate) loaded: bool,
+    /// Its name, or several names with plus signs.
+    pub(crate) label: Option<&'a str>,
+}
+
+impl<'a> RunPayload<'a> {
+    /// The payload of a log.
+    fn of(log: &'a Log) -> Self {
+        Self {
+            loaded: log.payload(),
+            label: log.payload_name(),
+        }
+    }
+}
+
+/// Checks that there are runs, and that the model has the payloads that they carry.
+///
+/// # Errors
+/// No run, named and unnamed payloads, or runs with a payload that the model lacks.
+pub(crate) fn check_payloads(info: &Info<'_>, runs: &[Log]) -> Result<(), Error> {
+    if runs.is_empty() {
+        return Err(
+            Problem::new(Code::NOTHING_DETERMINED, "there is no training run")
+                .help("give at least one log with --data, or runs in [[experiment.run]]")
+                .into(),
+        );
+    }
+    let loaded = || runs.iter().filter(|log| log.payload());
+    let unnamed = loaded().find(|log| log.payload_name().is_none());
+    let named = loaded().find_map(Log::payload_name);
+    if let (Some(unnamed), Some(named)) = (unnamed, named) {
+        let message = format!(
+            "the run carries a payload without a name, another one the payload `{named}`: they can't be distinguished"
+        );
+        let help = "name the payload of each run";
+        return Err(Problem::new(Code::LOG_PAYLOAD, message)
+            .file(unnamed.name())
+            .help(help)
+            .into());
+    }
+    if has_payload(info) {
+        return Ok(());
+    }
+    let problem = |log: &Log| {
+        Problem::new(
+            Code::LOG_PAYLOAD,
+            format!(
+                "the run carries a payload, but the description of `{}` has none",
+                info.name
+            ),
+        )
+        .file(log.name())
+        .help("describe the payload in [platform.payload], or declare the run unloaded")
+    };
+    Error::check(loaded().map(problem).collect())
 }
 
 /// Base parameters of a column set.
@@ -300,8 +364,13 @@ fn relative(base: &mut BaseParameters, columns: &ColumnSet) {
 
 /// Names of the payloads that runs carry, in the order of the runs; empty without names.
 pub(crate) fn payload_names(runs: &[Log]) -> Vec<String> {
+    names_of_labels(runs.iter().filter_map(Log::payload_name))
+}
+
+/// Names of the payloads of labels, in their order.
+pub(crate) fn names_of_labels<'a>(labels: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    for name in runs.iter().filter_map(Log::payload_name) {
+    for name in labels.flat_map(carried_payloads) {
         if !names.iter().any(|one| one == name) {
             names.push(name.to_owned());
         }

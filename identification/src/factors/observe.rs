@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     assessment::{self, check::Check},
-    estimation::base::{PayloadUse, base_parameters},
+    estimation::base::{PayloadUse, base_parameters, check_payloads, names_of_labels},
     identify::Progress,
     kinematics,
     prior::Prior,
@@ -110,7 +110,7 @@ impl<'a> Factory<'a> {
         progress: &dyn Fn(Progress<'_>),
     ) -> Result<Vec<RunFactors>, Error> {
         let budget = equations.then(|| LARGEST_STRETCHES / logs.len().max(1));
-        PayloadUse::of(&self.model.info(), logs)?;
+        check_payloads(&self.model.info(), logs)?;
         let checks = logs
             .iter()
             .filter_map(|log| kinematics::check(self.model, log, self.settings).err());
@@ -218,7 +218,7 @@ impl Columns {
     ) -> Result<Self, Error> {
         let seed = settings.seed;
         let new = |payload| ColumnSet::new(model, payload, settings.asymmetric_friction, seed);
-        let names: Vec<String> = load.flatten().map(str::to_owned).into_iter().collect();
+        let names = names_of_labels(load.flatten().into_iter());
         let all = new(load.is_some())?.with_payloads(&names);
         let mut chosen = match load {
             Some(_) => base_parameters(model, &all, PayloadUse::Separate, seed)?.columns,

@@ -9,7 +9,7 @@ use super::{
     run::RunFactors,
 };
 use crate::{
-    estimation::base::{BaseParameters, PayloadUse, base_parameters},
+    estimation::base::{BaseParameters, PayloadUse, RunPayload, base_parameters, names_of_labels},
     identify::{PreparedSystem, session_numbers},
     regression::{
         columns::{ColumnSet, has_payload},
@@ -18,7 +18,7 @@ use crate::{
     },
     settings::Settings,
 };
-use overact_logs::{Error, Problem};
+use overact_logs::{Error, Load, Problem};
 
 /// Combines the factors of runs.
 ///
@@ -102,25 +102,19 @@ fn payload_use(runs: &[RunFactors]) -> Result<PayloadUse, Error> {
             .help(help)
             .into());
     }
-    Ok(match loaded().count() {
-        0 => PayloadUse::Absent,
-        count if count == runs.len() => PayloadUse::Regrouped,
-        _ => PayloadUse::Separate,
-    })
+    let label = |run: &'_ RunFactors| RunPayload {
+        loaded: run.summary.payload,
+        label: run.summary.payload_name.as_deref(),
+    };
+    PayloadUse::of_labels(&runs.iter().map(label).collect::<Vec<_>>())
 }
 
 /// Names of the payloads, in the order of the runs.
 fn names(runs: &[RunFactors]) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for name in runs
+    let labels = runs
         .iter()
-        .filter_map(|run| run.summary.payload_name.as_ref())
-    {
-        if !names.contains(name) {
-            names.push(name.clone());
-        }
-    }
-    names
+        .filter_map(|run| run.summary.payload_name.as_deref());
+    names_of_labels(labels)
 }
 
 /// For each base parameter the column of the run; `None` if it is zero.
@@ -147,7 +141,8 @@ fn places(
             };
             let found = run.columns.iter().position(|name| *name == wanted.name);
             let carried = match (&wanted.load, &run.summary.payload_name) {
-                (Some(load), name) => name.as_ref() == Some(load),
+                (Some(load), Some(label)) => Load::Named(label).contains(load),
+                (Some(_), None) => false,
                 (None, _) => run.summary.payload,
             };
             own.push(if loads.contains(column) && !carried {

@@ -7,8 +7,18 @@ pub enum Load<'a> {
     Nothing,
     /// Any payload: for random states, or robots with one payload.
     Any,
-    /// The payload with this name.
+    /// The payload with this name, or several payloads, whose names are joined by plus signs.
     Named(&'a str),
+}
+
+/// Names of the payloads of a run, from its label: one name, or several with plus signs, `A+B`.
+///
+/// # Examples
+/// ```
+/// assert!(overact_logs::carried_payloads("box+tool").eq(["box", "tool"]));
+/// ```
+pub fn carried_payloads(label: &str) -> impl Iterator<Item = &str> {
+    label.split('+')
 }
 
 impl Load<'_> {
@@ -16,6 +26,16 @@ impl Load<'_> {
     #[must_use]
     pub fn is_some(self) -> bool {
         self != Self::Nothing
+    }
+
+    /// Whether the payload with this name is among those that are carried.
+    #[must_use]
+    pub fn contains(self, name: &str) -> bool {
+        match self {
+            Self::Nothing => false,
+            Self::Any => true,
+            Self::Named(label) => carried_payloads(label).any(|one| one == name),
+        }
     }
 }
 

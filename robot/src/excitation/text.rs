@@ -4,6 +4,7 @@ use super::fourier_run::FourierRun;
 use crate::error::{Error, Problem};
 use crate::robot::Robot;
 use overact_codegen::diagnostic::Code;
+use overact_identification::carried_payloads;
 use overact_simulation::{Term, Trajectory};
 use std::fmt::Write;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value};
@@ -26,7 +27,14 @@ pub(super) fn tables(
             Value::from(run.name.as_str())
         );
         match &run.payload_name {
-            Some(name) => _ = writeln!(table, "payload = \"{name}\""),
+            Some(label) => {
+                let names = carried_payloads(label).map(|name| format!("\"{name}\""));
+                let names: Vec<String> = names.collect();
+                let _ = match names.as_slice() {
+                    [name] => writeln!(table, "payload = {name}"),
+                    names => writeln!(table, "payload = [{}]", names.join(", ")),
+                };
+            }
             None if run.payload => table += "payload = true\n",
             None => {}
         }

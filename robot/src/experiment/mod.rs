@@ -11,7 +11,7 @@ use crate::{
 use overact::{Info, Model, Parameter};
 use overact_codegen::diagnostic::Code;
 use overact_codegen::{description, diagnostic::did_you_mean};
-use overact_identification::{is_carried, load_of};
+use overact_identification::{carried_payloads, is_carried, load_of};
 use overact_simulation::{Drives, Experiment, Record, Run, Term, Trajectory, simulate};
 use std::collections::BTreeMap;
 
@@ -78,7 +78,8 @@ impl Robot {
         names.map(|name| name.value.as_str()).collect()
     }
 
-    /// Name of the payload that a run of the virtual experiment carries, if there are several.
+    /// Name of the payload that a run of the virtual experiment carries, if there are several;
+    /// `A+B` if it carries two.
     pub(crate) fn payload_of(&self, run: &str) -> Option<&str> {
         let table = self.description().experiment.as_ref()?;
         let run = table.runs.iter().find(|one| one.name.value == run)?;
@@ -214,16 +215,18 @@ impl VirtualExperiment<'_> {
                 payload: run.payload && !of_robot,
                 ..run.clone()
             }];
-            let load = self.robot.payload_of(&run.name);
-            let own = load.and_then(|name| self.loads.get(name));
+            let label = self.robot.payload_of(&run.name);
+            let carried = label.into_iter().flat_map(carried_payloads);
+            let loads: Vec<_> = carried.filter_map(|name| self.loads.get(name)).collect();
             let both = [Some(&mut plan.parameters), plan.nominal_parameters.as_mut()];
             for values in both.into_iter().flatten() {
                 let all = info.parameters.iter().chain(info.payload_parameters);
                 for (parameter, value) in all.zip(values).filter(|(one, _)| is_of_payload(one)) {
                     if !run.payload {
                         *value = 0.0;
-                    } else if let Some(own) = own {
-                        *value = own.get(parameter.name).copied().unwrap_or(0.0);
+                    } else if !loads.is_empty() {
+                        let own = loads.iter().filter_map(|load| load.get(parameter.name));
+                        *value = own.sum();
                     }
                 }
             }

@@ -8,8 +8,8 @@ use crate::{configuration::prior::of_load, error::Error, robot::Robot};
 use overact::{Info, Model};
 use overact_codegen::diagnostic::Code;
 use overact_identification::{
-    Estimate, Instruments, Log, PreparedSystem, Projection, Settings, estimate_projection,
-    is_carried, load_of, prepare,
+    Estimate, Instruments, Load, Log, PreparedSystem, Projection, Settings, carried_payloads,
+    estimate_projection, is_carried, load_of, prepare,
 };
 use overact_simulation::{
     Cascade, Drives, Experiment, Record, Recorded, follow_recorded, simulate,
@@ -132,7 +132,7 @@ fn along_references(
 
 /// Standard parameters equivalent to the base estimate by least squares, the payload's last.
 ///
-/// With several payloads, those of the requested one.
+/// With several payloads, those of the requested ones.
 fn estimated<'a>(
     model: &'a dyn Model,
     runs: &[Log],
@@ -180,10 +180,19 @@ fn standard(
     };
     let all = info.parameters.iter().chain(info.payload_parameters);
     all.map(|parameter| {
-        let own = load.map(|load| value(&of_load(parameter.name, load)));
-        let of_other = load.is_some() && load_of(parameter).is_some_and(|own| Some(own) != load);
-        own.filter(|own| *own != 0.0 || of_other)
-            .unwrap_or_else(|| value(parameter.name))
+        let Some(label) = load else {
+            return value(parameter.name);
+        };
+        let carried = carried_payloads(label);
+        let own: f64 = carried
+            .map(|one| value(&of_load(parameter.name, one)))
+            .sum();
+        let of_other = load_of(parameter).is_some_and(|own| !Load::Named(label).contains(own));
+        if own != 0.0 || of_other {
+            own
+        } else {
+            value(parameter.name)
+        }
     })
     .collect()
 }

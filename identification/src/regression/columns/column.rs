@@ -166,10 +166,9 @@ impl Column {
     /// Whether the column counts with this payload.
     pub(super) fn counts(&self, carried: Load<'_>) -> bool {
         !self.origin.is_of_payload()
-            || match (carried, &self.load) {
-                (Load::Nothing, _) => false,
-                (Load::Named(name), Some(own)) => name == own,
-                (Load::Named(_), None) | (Load::Any, _) => true,
+            || match &self.load {
+                Some(own) => carried.contains(own),
+                None => carried.is_some(),
             }
     }
 

@@ -318,7 +318,7 @@ impl Log {
         matches!(self.source, Source::Memory(..))
     }
 
-    /// Name of the payload that the platform carried, if there are several.
+    /// Name of the payload that the robot carried, if there are several; `A+B` if it carried two.
     #[must_use]
     pub fn payload_name(&self) -> Option<&str> {
         self.payload_name.as_deref().filter(|_| self.payload)
@@ -332,6 +332,8 @@ impl Log {
     }
 
     /// The same run with a payload of this name; different names are different bodies.
+    ///
+    /// The name of several payloads is `A+B` ([`carried_payloads`](crate::carried_payloads)).
     #[must_use]
     pub fn with_payload_name(mut self, name: &str) -> Self {
         self.payload = true;
