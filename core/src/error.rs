@@ -37,7 +37,8 @@ pub enum Error {
     NotClosed {
         /// Name of the leg.
         leg: &'static str,
-        /// Closure error in a direction in which no joint moves the leg's end (m, rad).
+        /// Closure error in a direction in which no joint moves the leg's end (m, rad); NaN if the
+        /// leg does not reach the pose.
         gap: f64,
     },
     /// The independent coordinates of a pose with dependent ones do not determine the others.
@@ -141,6 +142,9 @@ impl fmt::Display for Error {
                 "the {actuators} do not determine the platform's motion here: their determinant is {}",
                 Smaller(condition)
             ),
+            Self::NotClosed { leg, gap } if gap.is_nan() => {
+                write!(f, "the pose is out of reach of leg `{leg}`")
+            }
             Self::NotClosed { leg, gap } => write!(
                 f,
                 "leg `{leg}` does not allow the pose: it is {gap:.1e} m or rad off in a direction that the leg blocks"
@@ -282,5 +286,12 @@ mod tests {
         };
         assert!(message(f64::INFINITY).ends_with("its determinant is zero"));
         assert!(message(2e9).ends_with("its determinant is 2.0e9 times smaller than at home"));
+    }
+
+    #[test]
+    fn poses_without_a_closure_error_are_out_of_reach() {
+        let message = |gap| Error::NotClosed { leg: "rod", gap }.to_string();
+        assert_eq!(message(f64::NAN), "the pose is out of reach of leg `rod`");
+        assert!(message(0.01).contains("it is 1.0e-2 m or rad off"));
     }
 }

@@ -227,6 +227,25 @@ impl Diagnostics {
         }
     }
 
+    /// Removes all errors of some codes, which may follow from the error at a location, and says
+    /// there how many they are.
+    pub(crate) fn fold(&mut self, cause: &Span, follows: &[Code]) {
+        let before = self.list.len();
+        self.list.retain(|error| !follows.contains(&error.code));
+        let removed = before - self.list.len();
+        let cause = { self.list.iter_mut() }.find(|error| error.span.as_ref() == Some(cause));
+        if let (1.., Some(cause)) = (removed, cause) {
+            let rest = match removed {
+                1 => String::from("One further error may follow from it and is not listed."),
+                _ => format!("{removed} further errors may follow from it and are not listed."),
+            };
+            cause.help = Some(match &cause.help {
+                Some(help) => format!("{help} {rest}"),
+                None => rest,
+            });
+        }
+    }
+
     /// Whether there is an error at exactly this location.
     #[must_use]
     pub fn has_error_at(&self, span: &Span) -> bool {

@@ -226,3 +226,31 @@ shape = "b"
         [format!("14:8 {message}"), format!("17:8 {message}")]
     );
 }
+
+/// A missing key is not reported beside the misspelt one.
+#[test]
+fn a_misspelt_required_key_is_one_error() {
+    for (key, wrong) in [("type = ", "tpye = "), ("name = \"Arm\"", "nmae = \"Arm\"")] {
+        let errors = listed(&single("", "").replacen(key, wrong, 1));
+        assert_eq!(errors.len(), 1, "{errors:?}");
+        let (wrong, key) = (&wrong[..4], &key[..4]);
+        let expected = format!("unknown key `{wrong}`; did you mean `{key}`?");
+        assert!(errors[0].contains(&expected), "{errors:?}");
+    }
+}
+
+/// Errors that follow from a misspelt table are counted; others are listed.
+#[test]
+fn consequences_of_a_misspelt_table_are_not_listed() {
+    let constants = "[constnts]\nl = \"1 m\"";
+    let errors = listed(&single(constants, "d = \"l\""));
+    assert_eq!(
+        errors,
+        [
+            "2:2 unknown key `constnts`; did you mean `constants`? One further error may follow from it and is not listed."
+        ]
+    );
+    let errors = listed(&single(constants, "d = \"l\"\nr = \"1 s\""));
+    assert_eq!(errors.len(), 2, "{errors:?}");
+    assert!(errors[1].contains("expected a length"), "{errors:?}");
+}

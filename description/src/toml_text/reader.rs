@@ -4,7 +4,7 @@
 //! are reported with their location, and the result is `None`.
 
 use crate::diagnostic::Spanned;
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span, did_you_mean};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Source, Span, did_you_mean, nearest};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use toml::de::{DeTable, DeValue};
@@ -17,6 +17,8 @@ pub(crate) struct Context<'t> {
     warnings: RefCell<Vec<Spanned<String>>>,
     /// Magnitudes of the numbers that are not named constants, as bits, in SI units.
     magnitudes: RefCell<BTreeSet<u64>>,
+    /// Location of the first table whose name is misspelt.
+    misspelt_table: RefCell<Option<Span>>,
 }
 
 impl<'t> Context<'t> {
@@ -26,6 +28,7 @@ impl<'t> Context<'t> {
             errors: RefCell::default(),
             warnings: RefCell::default(),
             magnitudes: RefCell::default(),
+            misspelt_table: RefCell::default(),
         }
     }
 
@@ -81,8 +84,19 @@ impl<'t> Context<'t> {
         self.source.text.get(span.clone()).unwrap_or("")
     }
 
+    /// The errors; those that may follow from a misspelt table are counted, not listed.
     pub(crate) fn into_errors(self) -> Diagnostics {
-        self.errors.into_inner()
+        let mut errors = self.errors.into_inner();
+        if let Some(table) = self.misspelt_table.into_inner() {
+            let follows = [
+                Code::FORMULA,
+                Code::WRONG_COUNT,
+                Code::UNKNOWN_NAME,
+                Code::STRUCTURE,
+            ];
+            errors.fold(&table, &follows);
+        }
+        errors
     }
 }
 
@@ -95,6 +109,8 @@ pub(crate) struct Table<'c, 't> {
     /// Name of the table in messages, such as "the table `[platform]`".
     what: String,
     known: RefCell<Vec<String>>,
+    /// Misspelt keys that were reported in place of a required key.
+    misspelt: RefCell<Vec<String>>,
 }
 
 /// A value that is being read.
@@ -120,6 +136,7 @@ impl<'c, 't> Table<'c, 't> {
             span,
             what: what.into(),
             known: RefCell::default(),
+            misspelt: RefCell::default(),
         }
     }
 
@@ -139,9 +156,18 @@ impl<'c, 't> Table<'c, 't> {
     }
 
     /// The value of a required key.
+    ///
+    /// If another key looks like it, only that one is reported.
     pub(crate) fn require(&self, key: &str, help: &str) -> Option<Item<'c, 't>> {
         let item = self.get(key);
-        if item.is_none() {
+        if item.is_some() {
+            return item;
+        }
+        let mut unread = self.unread().into_iter();
+        if let Some(other) = unread.find(|other| nearest(&other.key.value, [key]).is_some()) {
+            self.report_unknown(&other, did_you_mean(&other.key.value, [key]));
+            self.misspelt.borrow_mut().push(other.key.value);
+        } else {
             let message = format!("{} has no `{key}`", self.what);
             self.context
                 .report(Diagnostic::new(Code::MISSING_KEY, message, self.span.clone()).help(help));
@@ -181,20 +207,28 @@ impl<'c, 't> Table<'c, 't> {
     pub(crate) fn finish(&self) {
         for item in self.unread() {
             let known = self.known.borrow();
-            let name = &item.key.value;
-            let help = did_you_mean(name, known.iter().map(String::as_str));
-            let help = help.unwrap_or_else(|| format!("known keys: {}", known.join(", ")));
-            let diagnostic = Diagnostic::new(
-                Code::UNKNOWN_KEY,
-                format!("unknown key `{name}`"),
-                item.key.span.clone(),
-            );
-            self.context.report(
-                diagnostic
-                    .label(format!("not a key of {}", self.what))
-                    .help(help),
-            );
+            let suggestion = did_you_mean(&item.key.value, known.iter().map(String::as_str));
+            if !self.misspelt.borrow().contains(&item.key.value) {
+                self.report_unknown(&item, suggestion);
+            }
         }
+    }
+
+    /// Reports an unknown key with a suggestion, or else with all keys requested so far.
+    fn report_unknown(&self, item: &Item<'c, 't>, suggestion: Option<String>) {
+        if suggestion.is_some() && item.is_table_or_tables() {
+            let mut table = self.context.misspelt_table.borrow_mut();
+            table.get_or_insert_with(|| item.key.span.clone());
+        }
+        let help =
+            suggestion.unwrap_or_else(|| format!("known keys: {}", self.known.borrow().join(", ")));
+        let message = format!("unknown key `{}`", item.key.value);
+        let diagnostic = Diagnostic::new(Code::UNKNOWN_KEY, message, item.key.span.clone());
+        self.context.report(
+            diagnostic
+                .label(format!("not a key of {}", self.what))
+                .help(help),
+        );
     }
 }
 
@@ -332,16 +366,22 @@ impl<'c, 't> Item<'c, 't> {
         self.value.is_table()
     }
 
+    /// Whether the value is a table, or a list of tables.
+    fn is_table_or_tables(&self) -> bool {
+        match self.value {
+            DeValue::Table(_) => true,
+            DeValue::Array(list) => {
+                let mut all = list.iter().map(|one| one.get_ref());
+                !list.is_empty() && all.all(|one| matches!(one, DeValue::Table(_)))
+            }
+            _ => false,
+        }
+    }
+
     /// The value as a table; `what` is its name in messages.
     pub(crate) fn table(&self, what: impl Into<String>) -> Option<Table<'c, 't>> {
         let DeValue::Table(entries) = self.value else {
-            let is_head = match self.value {
-                DeValue::Array(list) => {
-                    let mut all = list.iter().map(|one| one.get_ref());
-                    !list.is_empty() && all.all(|one| matches!(one, DeValue::Table(_)))
-                }
-                _ => false,
-            };
+            let is_head = self.is_table_or_tables();
             let key = &self.key.value;
             let help = is_head.then(|| format!("write single brackets, [{key}] or [{key}.NAME]"));
             return self.mismatch_with("a table", help);
