@@ -263,6 +263,12 @@ fn fill(settings: &mut Identification, table: &Table<'_, '_>, robot: &Inventory<
     settings.gains = table
         .get("gains")
         .is_some_and(|item| known::gains(&item, &settings.known, robot));
+    if let Some(item) = table.get("known").filter(|_| !settings.gains) {
+        let what = String::from(
+            "[identification.known] has no effect on the estimates without `gains = true` or `--gains`: known values only determine gains",
+        );
+        item.context.warn(what, &item.key.span);
+    }
 }
 
 /// Velocities of standstill: one for all actuators or a list.

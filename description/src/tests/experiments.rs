@@ -353,6 +353,15 @@ ia_2 = [1, 2]
 }
 
 #[test]
+fn known_values_without_gains_are_warned_about() {
+    let text = single("[identification]\nknown = { zz_1 = 0.5 }", "");
+    let found = good(&text).warnings;
+    assert_eq!(found.len(), 1);
+    assert_eq!(&text[found[0].span.clone()], "known");
+    assert!(found[0].value.contains("`gains = true`"), "{found:?}");
+}
+
+#[test]
 fn gain_identification_needs_nonzero_known_parameters() {
     let tables = r#"[identification]
 gains = true
@@ -374,6 +383,7 @@ zz_1 = "2 kg"
     let good = good(&single(tables, ""));
     assert!(good.identification.gains);
     assert_eq!(good.identification.known, [(String::from("zz_1"), 0.5)]);
+    assert_eq!(good.warnings, []);
 }
 
 #[test]
