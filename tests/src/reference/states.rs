@@ -23,7 +23,7 @@ use rand_pcg::Pcg64;
 pub const MAX_CONDITION: f64 = 60.0;
 /// Largest rate of a joint per unit rate of the independent ones, if others of the pose depend on
 /// them: near a dead centre it is infinite.
-pub const MAX_GAIN: f64 = 10.0;
+pub const MAX_GAIN: f64 = 5.0;
 /// Largest twist coordinate, m/s and rad/s.
 pub const MAX_SPEED: f64 = 1.5;
 /// Largest derivative of a twist coordinate, m/s² and rad/s².
