@@ -102,11 +102,11 @@ fn payload_use(runs: &[RunFactors]) -> Result<PayloadUse, Error> {
             .help(help)
             .into());
     }
-    let label = |run: &'_ RunFactors| RunPayload {
+    let labels = runs.iter().map(|run| RunPayload {
         loaded: run.summary.payload,
         label: run.summary.payload_name.as_deref(),
-    };
-    PayloadUse::of_labels(&runs.iter().map(label).collect::<Vec<_>>())
+    });
+    PayloadUse::of_labels(&labels.collect::<Vec<_>>())
 }
 
 /// Names of the payloads, in the order of the runs.
