@@ -173,7 +173,7 @@ pub enum CheckKind {
     RepeatedSamples,
     /// Two columns of a log are equal.
     DuplicateColumns,
-    /// A torque is zero throughout.
+    /// A torque is zero throughout, or noise around zero.
     ZeroTorque,
     /// A torque does not change while its actuator moves.
     FrozenTorque,

@@ -37,6 +37,15 @@ const CLIPPED_RATIO: usize = 10;
 /// Fewest samples at an extreme.
 const FEWEST_CLIPPED: usize = 10;
 
+/// Largest mean square of a torque by the variance of its noise, less 1, that may be noise alone.
+const ONLY_NOISE: f64 = 0.25;
+
+/// The same in standard deviations for few samples: those of the quotient of both are √(6.6/n).
+///
+/// Third differences of white noise have 2.3 times the relative variance of its squares.
+const ONLY_NOISE_DEVIATIONS: f64 = 6.0;
+const QUOTIENT_VARIANCE: f64 = 6.6;
+
 /// Statistics of the raw positions and torques of a run.
 #[derive(Debug, Clone)]
 pub struct Monitor {
@@ -44,6 +53,8 @@ pub struct Monitor {
     samples: usize,
     positions: Vec<Position>,
     torques: Vec<[Extreme; 2]>,
+    /// Sum of the squares of each actuator's torques.
+    torque_squares: Vec<f64>,
     torque_rests: Vec<TorqueRests>,
     /// Means of the torques over a few samples, at the start of the run.
     means: Means,
@@ -67,6 +78,7 @@ impl Monitor {
             samples: 0,
             positions: vec![Position::default(); actuators],
             torques: vec![[Extreme::default(); 2]; actuators],
+            torque_squares: vec![0.0; actuators],
             torque_rests: vec![TorqueRests::default(); actuators],
             means: Means::new(actuators, frequency),
             roughness: [Roughness::new(actuators), Roughness::new(actuators)],
@@ -114,10 +126,12 @@ impl Monitor {
         torques().for_each(|torques| self.means.take(torques));
         self.roughness[0].take(&samples.positions);
         self.roughness[1].take(&samples.torques);
-        for ([low, high], actuator) in self.torques.iter_mut().zip(0..) {
+        let sums = self.torque_squares.iter_mut();
+        for (([low, high], sum), actuator) in self.torques.iter_mut().zip(sums).zip(0..) {
             for torque in samples.torques[actuator..].iter().step_by(n) {
                 high.take(*torque);
                 low.take(-torque);
+                *sum += torque * torque;
             }
         }
         for (rests, actuator) in self.torque_rests.iter_mut().zip(0..) {
@@ -257,6 +271,30 @@ impl Monitor {
             .collect()
     }
 
+    /// Torques that are white noise around zero while their actuator moves.
+    fn noise_torques(&self, names: &[&str]) -> Vec<Suspicion> {
+        let [_, noise] = self.noise();
+        let samples = self.samples.max(1) as f64;
+        let deviation = (QUOTIENT_VARIANCE / samples).sqrt();
+        let limit = 1.0 + ONLY_NOISE.min(ONLY_NOISE_DEVIATIONS * deviation);
+        let found = |(actuator, at_rest): (usize, bool)| {
+            let (sum, noise) = (self.torque_squares.get(actuator)?, noise.get(actuator)?);
+            let quotient = sum / samples / noise;
+            (!at_rest && quotient <= limit).then(|| Suspicion {
+                fault: DataFault::Zero,
+                actuator: names.get(actuator).map(|name| (*name).to_owned()),
+                statistic: quotient,
+                unit: "times the variance of its noise",
+                threshold: limit,
+                message: String::from(
+                    "the torque is noise around zero, while the actuator moves: it was not recorded, or is in another column",
+                ),
+            })
+        };
+        let at_rest = self.at_rest().into_iter().enumerate();
+        at_rest.filter_map(found).collect()
+    }
+
     /// Torques that do not change while their actuator moves, except for those of `known`.
     fn frozen_torques(&self, names: &[&str], known: &[Suspicion]) -> Vec<Suspicion> {
         let is_known = |name: &str| {
@@ -350,6 +388,7 @@ impl Monitor {
             });
             return suspicions;
         }
+        suspicions.extend(self.noise_torques(names));
         suspicions.extend(self.frozen_torques(names, &suspicions));
         suspicions.extend(self.duplicates(names, coupled));
         let stuck: Vec<Option<(f64, String)>> = (0..names.len())

@@ -32,7 +32,7 @@ pub enum DataFault {
     Standstill,
     /// Two columns are equal.
     Duplicate,
-    /// A torque is zero throughout.
+    /// A torque is zero throughout, or noise around zero.
     Zero,
     /// A torque does not change while its actuator moves.
     FrozenTorque,

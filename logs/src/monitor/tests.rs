@@ -2,6 +2,7 @@
 
 use super::{DataFault, Monitor, Suspicion};
 use crate::samples::Samples;
+use std::cell::RefCell;
 use std::f64::consts::TAU;
 
 /// Samples per second.
@@ -196,4 +197,43 @@ fn repeated_rows_are_counted_and_resampling_is_suggested() {
     assert!(message.contains(expected), "{message}");
     assert!(message.contains("`resample = \"500 Hz\"`"), "{message}");
     assert_eq!(with_repeated_rows(|_| false), []);
+}
+
+/// White noise with the variance 1/12, the same on every machine.
+fn noise(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    }
+}
+
+#[test]
+fn torques_that_are_noise_around_zero_are_reported() {
+    for (samples, seed) in [(500, 1), (5000, 2), (50_000, 3)] {
+        let draw = RefCell::new(noise(seed));
+        let found = suspicions(samples, |_| draw.borrow_mut()());
+        let [one] = &found[..] else {
+            panic!("one suspicion, not {found:?}");
+        };
+        assert_eq!(one.fault, DataFault::Zero);
+        assert!(one.message.contains("noise around zero"), "{}", one.message);
+    }
+}
+
+#[test]
+fn torques_with_more_noise_than_signal_are_not_zero() {
+    // Amplitudes of 0.3 and 0.15, and an offset, under noise with a deviation of 0.29.
+    let signals: [fn(f64) -> f64; 3] = [
+        |time| 0.3 * (3.7 * time).sin(),
+        |time| 0.15 * (3.7 * time).sin(),
+        |_| 0.1,
+    ];
+    for (signal, samples) in signals.into_iter().zip([5000, 50_000, 50_000]) {
+        let draw = RefCell::new(noise(4));
+        let found = suspicions(samples, |time| signal(time) + draw.borrow_mut()());
+        assert_eq!(found, []);
+    }
 }

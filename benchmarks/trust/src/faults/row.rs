@@ -89,7 +89,9 @@ pub struct FaultRow {
     pub parameters: f64,
     /// Largest error of a usable parameter in one draw, in standard deviations, and its name.
     pub largest: Option<(f64, String)>,
-    /// Largest mean of the error of a parameter over the draws in which it is usable.
+    /// Largest mean of the error of a parameter over the draws in which it is usable, if these are
+    /// at least half of them: in few draws, a small parameter is only recommended if noise makes it
+    /// large.
     pub mean: Option<(f64, String)>,
     /// Fraction of the values of usable parameters beyond 3.5 standard deviations, in percent.
     pub beyond_percent: f64,
@@ -113,12 +115,14 @@ impl FaultRow {
             own.into_iter()
                 .for_each(|name| *checks.entry(name).or_default() += 1);
         }
-        let worst = |of: &dyn Fn(&[f64]) -> f64| {
-            let all = errors
-                .iter()
-                .map(|(name, own)| (of(own), (*name).to_owned()));
+        let worst = |least: usize, of: &dyn Fn(&[f64]) -> f64| {
+            let all = errors.iter().filter(|(_, own)| own.len() >= least);
+            let all = all.map(|(name, own)| (of(own), (*name).to_owned()));
             all.max_by(|a, b| a.0.total_cmp(&b.0))
         };
+        let mean = worst(draws.len().div_ceil(2), &|own| {
+            own.iter().sum::<f64>().abs() / own.len() as f64
+        });
         let values: Vec<f64> = errors.values().flatten().copied().collect();
         let beyond = values.iter().filter(|error| error.abs() > LARGE).count();
         let [listed, used] = [Grade::UseListed, Grade::Use].map(|grade| count(Some(grade)));
@@ -130,8 +134,10 @@ impl FaultRow {
             listed,
             used,
             parameters: values.len() as f64 / (listed + used).max(1) as f64,
-            largest: worst(&|own| own.iter().fold(0.0, |most: f64, one| most.max(one.abs()))),
-            mean: worst(&|own| own.iter().sum::<f64>().abs() / own.len() as f64),
+            largest: worst(1, &|own| {
+                own.iter().fold(0.0, |most: f64, one| most.max(one.abs()))
+            }),
+            mean,
             beyond_percent: 100.0 * beyond as f64 / values.len().max(1) as f64,
             checks,
         }

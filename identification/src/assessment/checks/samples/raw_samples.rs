@@ -142,7 +142,7 @@ fn suspicion_check(run: &str, suspicion: Suspicion) -> Check {
         DataFault::Zero => (
             CheckKind::ZeroTorque,
             Grade::DoNotUse,
-            "a measured torque is never zero throughout",
+            "the torque of a moving drive is not zero",
         ),
         DataFault::FrozenTorque => (
             CheckKind::FrozenTorque,
