@@ -89,9 +89,10 @@ pub struct FaultRow {
     pub parameters: f64,
     /// Largest error of a usable parameter in one draw, in standard deviations, and its name.
     pub largest: Option<(f64, String)>,
-    /// Largest mean of the error of a parameter over the draws in which it is usable, if these are
-    /// at least half of them: in few draws, a small parameter is only recommended if noise makes it
-    /// large.
+    /// Largest mean of the error of a parameter over the draws in which it is usable.
+    ///
+    /// These are at least half of the draws with usable parameters: noise decides whether a small
+    /// parameter is recommended, so that its mean over few draws is that of a selection.
     pub mean: Option<(f64, String)>,
     /// Fraction of the values of usable parameters beyond 3.5 standard deviations, in percent.
     pub beyond_percent: f64,
@@ -120,12 +121,13 @@ impl FaultRow {
             let all = all.map(|(name, own)| (of(own), (*name).to_owned()));
             all.max_by(|a, b| a.0.total_cmp(&b.0))
         };
-        let mean = worst(draws.len().div_ceil(2), &|own| {
-            own.iter().sum::<f64>().abs() / own.len() as f64
-        });
         let values: Vec<f64> = errors.values().flatten().copied().collect();
         let beyond = values.iter().filter(|error| error.abs() > LARGE).count();
         let [listed, used] = [Grade::UseListed, Grade::Use].map(|grade| count(Some(grade)));
+        // Each parameter has a value in both stages.
+        let mean = worst(listed + used, &|own| {
+            own.iter().sum::<f64>().abs() / own.len() as f64
+        });
         Self {
             robot: robot.to_owned(),
             fault: fault.to_owned(),
