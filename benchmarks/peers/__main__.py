@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import blockwise, closed, controller, derivatives, frames, identification, logs, ours, pinocchio_cpp, pinocchio_peer, report, table, timing
+from . import blockwise, cable_robots, closed, controller, derivatives, frames, identification, logs, ours, pinocchio_cpp, pinocchio_peer, report, table, timing
 from .description import load
 from .ours import Function
 from .peers import Model, check, models
@@ -78,6 +78,9 @@ def main():
         "--closed", action="store_true", help="only robots with closed chains, from joint angles"
     )
     parser.add_argument(
+        "--cables", action="store_true", help="only robots with cables, from the pose; counts only"
+    )
+    parser.add_argument(
         "--derivatives", action="store_true", help="only derivatives of the dynamics, in C and Rust"
     )
     parser.add_argument("--frames", action="store_true", help="only Jacobians of frames, in C and Rust")
@@ -110,6 +113,9 @@ def main():
         return
     if arguments.closed:
         print(closed.measure(arguments.only, arguments.samples))
+        return
+    if arguments.cables:
+        print(cable_robots.measure(arguments.only, arguments.samples))
         return
     if arguments.derivatives:
         print(derivatives.measure(*given))

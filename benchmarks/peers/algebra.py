@@ -157,6 +157,23 @@ def inverse_by_elimination(m):
     return [work[pivots[j]][n:] for j in range(n)]
 
 
+def solve_by_elimination(m, v):
+    """Solves m x = v by elimination without exchange of rows, and back substitution."""
+    n = len(v)
+    rows, x = [list(row) for row in m], list(v)
+    inverses = []
+    for k in range(n):
+        inverses.append(ONE / rows[k][k])
+        for i in range(k + 1, n):
+            factor = rows[i][k] * inverses[k]
+            for j in range(k + 1, n):
+                rows[i][j] = rows[i][j] - factor * rows[k][j]
+            x[i] = x[i] - factor * x[k]
+    for k in reversed(range(n)):
+        x[k] = (x[k] - dot(rows[k][k + 1 :], x[k + 1 :])) * inverses[k]
+    return x
+
+
 def determinant(m):
     if len(m) == 1:
         return m[0][0]

@@ -18,7 +18,8 @@ def close(angles, algebra, platform, leg, pose, home):
     """Passes the pairs of all sums of a leg's joints to `angles`."""
     kinds = [joint.kind[0] for joint in leg.joints]
     alphas = [round(math.degrees(joint.alpha), 9) for joint in leg.joints]
-    if platform.robot.motion == "planar" and kinds == ["r"] * 3 and not any(alphas):
+    is_planar = platform.robot.motion == "planar" and platform.robot.axis == "z"
+    if is_planar and kinds == ["r"] * 3 and not any(alphas):
         plane(angles, algebra, platform, leg, pose, home)
     elif kinds == ["r", "r", "r", "f"] and alphas == [-90.0, 0.0, 90.0, 0.0] and leg.end_type == "point":
         arm(angles, algebra, to_end(platform, leg, pose), leg, home)

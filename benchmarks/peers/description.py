@@ -50,6 +50,15 @@ class Joint:
 
 
 @dataclass
+class Cable:
+    """A leg without joints: radius of its pulley (0 for an eyelet), least tension, parameters of its drive."""
+
+    pulley: float
+    minimum: float
+    parameters: list[str]
+
+
+@dataclass
 class Leg:
     """A placed leg."""
 
@@ -64,6 +73,7 @@ class Leg:
     base_body: int | None = None
     end_body: int | None = None
     variables: list[int] = field(default_factory=list)
+    cable: Cable | None = None
 
 
 @dataclass
@@ -126,6 +136,17 @@ def joint(entry, number, known, names, full):
     )
 
 
+def cable(shape, names):
+    """The cable of a leg without joints."""
+    if shape.get("type") != "cable":
+        return None
+    return Cable(
+        pulley=evaluate(shape.get("pulley", 0), names),
+        minimum=evaluate(shape.get("minimum", 0), names),
+        parameters=parameter_list(shape.get("parameters", ["ia", "fv", "fs"])),
+    )
+
+
 def load(path, full=False):
     """Reads a description; `full` gives every joint all fourteen parameters."""
     with open(path, "rb") as file:
@@ -142,7 +163,7 @@ def load(path, full=False):
             names[variable] = evaluate(place[variable], constants)
         base = shape.get("base", {})
         known, joints = [], []
-        for number, entry in enumerate(shape["joint"], 1):
+        for number, entry in enumerate(shape.get("joint", []), 1):
             joints.append(joint(entry, number, known, names, full))
             known.append(joints[-1].name)
         end = shape.get("end", {})
@@ -159,6 +180,7 @@ def load(path, full=False):
                 end_rotation=orientation(vector(end.get("rotation", [0, 0, 0]), names)),
                 base_body=carriers[0],
                 end_body=carriers[1],
+                cable=cable(shape, names),
             )
         )
     return Robot(

@@ -98,6 +98,11 @@ def about_z(pair):
     return [[c, -s, ZERO], [s, c, ZERO], [ZERO, ZERO, ONE]]
 
 
+def about_y(pair):
+    c, s = pair
+    return [[c, ZERO, s], [ZERO, ONE, ZERO], [-s, ZERO, c]]
+
+
 def about_x(pair):
     c, s = pair
     return [[ONE, ZERO, ZERO], [ZERO, c, -s], [ZERO, s, c]]

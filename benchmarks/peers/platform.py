@@ -1,7 +1,7 @@
 """The platform: its independent coordinates, its motion, its columns."""
 
 from .algebra import ONE, add, apply, cross, dot, matrix, scale, sub, transpose, vector
-from .model import Motion, about_z, body_wrench, spin
+from .model import Motion, about_x, about_y, about_z, body_wrench, spin
 from .values import Linear
 
 #: Directions of the translations and rotations of each motion, for motions without an axis.
@@ -42,10 +42,11 @@ class Platform:
             return from_quaternion(pose[at : at + 4])
         if not rotations:
             return matrix([[1, 0, 0], [0, 1, 0], [0, 0, 1]])
-        if rotations != "z":
-            raise NotImplementedError("rotation about another axis than z")
+        if rotations not in tuple(SPACE):
+            raise NotImplementedError("rotation about a tilted axis")
         angles.variables["phi"] = pose[at]
-        return about_z(angles.pair(Linear(0.0, {"phi": 1.0})))
+        about = [about_x, about_y, about_z][SPACE.index(rotations)]
+        return about(angles.pair(Linear(0.0, {"phi": 1.0})))
 
     def combined(self, values):
         linear, angular = vector([0] * 3), vector([0] * 3)
