@@ -45,17 +45,16 @@ struct Swivel<'a> {
     lever: Expr<'a>,
 }
 
-/// The course of a leg's cable to a point, with the conditions for it to exist.
+/// The course of a leg's cable, with the conditions for it to exist.
 ///
-/// `home` evaluates an expression at the home configuration.
+/// `between` is the vector from the exit point to the platform point in base axes; `home` evaluates an expression at the home configuration.
 pub(crate) fn cable_course<'a>(
     arena: &'a Arena,
     leg: &Leg,
     cable: &Cable,
-    point: Vector3<'a>,
+    between: Vector3<'a>,
     home: &dyn Fn(Expr<'a>) -> f64,
 ) -> (CableCourse<'a>, Vec<Guard<'a>>) {
-    let between = point - Vector3::constant(arena, leg.base.at);
     if cable.pulley.is_zero() {
         let length = between.dot(between).sqrt();
         let course = CableCourse {
@@ -71,28 +70,31 @@ pub(crate) fn cable_course<'a>(
     let axes = constant_rotation(arena, leg.base.rotation);
     let local = axes.transposed() * between;
     let height = local.z();
-    let (from_axis, outwards, is_turning) = distance_from_axis(arena, local, home);
-    let from_axis = from_axis.named(&format!("from_axis_{}", leg.name));
+    let plane = SwivelPlane::new(arena, local, home);
+    let from_axis = plane.distance.named(&format!("from_axis_{}", leg.name));
     let beyond = from_axis - radius;
     let square = beyond.squared() + height.squared();
     let radicand = square - radius.squared();
     let straight = radicand.sqrt().named(&format!("straight_{}", leg.name));
     let inverse = square.reciprocal();
-    let sine = (radius * height + straight * beyond) * inverse;
-    let cosine = (straight * height - radius * beyond) * inverse;
-    let sine = sine.named(&format!("s_wrapped_{}", leg.name));
-    let cosine = cosine.named(&format!("c_wrapped_{}", leg.name));
+    // d² sin β and d² cos β.
+    let [sine, cosine] = [
+        radius * height + straight * beyond,
+        straight * height - radius * beyond,
+    ];
     let quarter = arena.number(Number::float(FRAC_PI_2));
     let wrapped = (-cosine).atan2(sine) + quarter;
     let wrapped = wrapped.named(&format!("wrapped_{}", leg.name));
+    let sine = (sine * inverse).named(&format!("s_wrapped_{}", leg.name));
+    let cosine = (cosine * inverse).named(&format!("c_wrapped_{}", leg.name));
     let zero = arena.zero();
     let in_plane = |out: Expr<'a>, up: Expr<'a>| {
-        let local = outwards.scaled(out) + Vector3([zero, zero, up]);
+        let local = plane.outwards.scaled(plane.scale * out) + Vector3([zero, zero, up]);
         axes * local
     };
-    let normal = Vector3([-outwards.0[1], outwards.0[0], zero]);
-    let turning = if is_turning {
-        axes * normal.scaled(from_axis.reciprocal())
+    let normal = Vector3([-plane.outwards.0[1], plane.outwards.0[0], zero]);
+    let turning = if plane.is_turning {
+        axes * normal.scaled(plane.scale * from_axis.reciprocal())
     } else {
         Vector3::zero(arena)
     };
@@ -120,34 +122,46 @@ pub(crate) fn cable_course<'a>(
     (course, guards)
 }
 
-/// Distance r of a point from the swivel axis, the unit vector towards it, and whether that turns.
-///
-/// In a plane that contains the axis the distance is a coordinate with its sign at home.
-fn distance_from_axis<'a>(
-    arena: &'a Arena,
-    local: Vector3<'a>,
-    home: &dyn Fn(Expr<'a>) -> f64,
-) -> (Expr<'a>, Vector3<'a>, bool) {
-    let zero = arena.zero();
-    let signed = |coordinate: Expr<'a>| {
-        if home(coordinate) < 0.0 {
-            (-coordinate, -arena.one())
-        } else {
-            (coordinate, arena.one())
+/// The plane of the swivel axis and a point.
+struct SwivelPlane<'a> {
+    /// Distance r of the point from the axis; in a fixed plane a coordinate with its sign at home.
+    distance: Expr<'a>,
+    /// Vector from the axis to the point.
+    outwards: Vector3<'a>,
+    /// Factor that makes it a unit vector.
+    scale: Expr<'a>,
+    /// Whether the plane turns.
+    is_turning: bool,
+}
+
+impl<'a> SwivelPlane<'a> {
+    /// The plane of a point in axes whose z axis is the swivel axis.
+    fn new(arena: &'a Arena, local: Vector3<'a>, home: &dyn Fn(Expr<'a>) -> f64) -> Self {
+        let (zero, one) = (arena.zero(), arena.one());
+        let (x, y) = (local.x(), local.y());
+        let fixed = |coordinate: Expr<'a>, axis: Vector3<'a>| {
+            let sign = if home(coordinate) < 0.0 { -one } else { one };
+            Self {
+                distance: coordinate * sign,
+                outwards: axis,
+                scale: sign,
+                is_turning: false,
+            }
+        };
+        if y.is_zero() {
+            return fixed(x, Vector3([one, zero, zero]));
         }
-    };
-    let (x, y) = (local.x(), local.y());
-    if y.is_zero() {
-        let (distance, sign) = signed(x);
-        return (distance, Vector3([sign, zero, zero]), false);
+        if x.is_zero() {
+            return fixed(y, Vector3([zero, one, zero]));
+        }
+        let distance = (x.squared() + y.squared()).sqrt();
+        Self {
+            distance,
+            outwards: Vector3([x, y, zero]),
+            scale: distance.reciprocal(),
+            is_turning: true,
+        }
     }
-    if x.is_zero() {
-        let (distance, sign) = signed(y);
-        return (distance, Vector3([zero, sign, zero]), false);
-    }
-    let distance = (x.squared() + y.squared()).sqrt();
-    let inverse = distance.reciprocal();
-    (distance, Vector3([x * inverse, y * inverse, zero]), true)
 }
 
 impl<'a> CableCourse<'a> {

@@ -101,9 +101,11 @@ impl<'a> Robot<'a> {
             leg: leg.name.clone(),
         };
         let at = leg.end.as_ref().ok_or_else(unsolved)?.point();
-        let point = platform.origin + platform.arm(at);
+        // Cables whose exit points have equal coordinates share them, taken from the platform first.
+        let from_exit = platform.origin - Vector3::constant(arena, leg.base.at);
+        let between = from_exit + platform.arm(at);
         let home = |value: Expr<'a>| mechanism.home.value(arena, value);
-        let (course, guards) = cable_course(arena, leg, cable, point, &home);
+        let (course, guards) = cable_course(arena, leg, cable, between, &home);
         let guards = guards
             .into_iter()
             .filter(|guard| guard.value.as_number().is_none());
