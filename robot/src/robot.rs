@@ -77,6 +77,17 @@ impl Robot {
         &self.description
     }
 
+    /// Contents of the description that may be unintended, each with its line.
+    #[must_use]
+    pub fn description_warnings(&self) -> Vec<String> {
+        let warnings = self.description.warnings.iter();
+        let located = warnings.map(|warning| {
+            let line = self.source.position(&warning.span).line;
+            format!("{}:{line}: {}", self.source.name, warning.value)
+        });
+        located.collect()
+    }
+
     /// Model of the robot.
     #[must_use]
     pub const fn model(&self) -> &InterpretedRobot {

@@ -257,6 +257,44 @@ fn two_known_payload_masses_determine_gains_of_a_parallel_robot() {
 }
 
 #[test]
+fn known_masses_without_gains_are_warned_about() {
+    let robot = robot(&dualv("known = { m_payload_heavy = \"5.42 kg\" }"));
+    let runs = runs(&robot, &robot.held_out());
+    let warned = |gains: bool| {
+        let result = Identifier::new(&robot).data(&runs).gains(gains).run();
+        let result = result.unwrap_or_else(|error| panic!("{}", error.render(false)));
+        let mut warnings = result.warnings.iter();
+        warnings.any(|one| one.contains("[identification.known] has no effect"))
+    };
+    assert!(warned(false) && !warned(true));
+}
+
+/// Runs with and without payload determine the direction of gravity and the payload together.
+#[test]
+fn gravity_is_identified_from_runs_with_different_payloads() {
+    let robot = robot(&rx90_with(&[UNLOADED, HEAVY, BOTH]));
+    let runs = runs(&robot, &[String::from("validation")]);
+    let identifier = Identifier::new(&robot).data(&runs).gravity_direction(true);
+    let result = identifier
+        .run()
+        .unwrap_or_else(|error| panic!("{}", error.render(false)));
+    let gravity = result.gravity.as_ref().expect("a direction");
+    println!("{gravity:?}");
+    check(&result, ["_heavy", "_light"]);
+    // The described direction is the true one.
+    assert!(!gravity.significant, "{gravity:?}");
+    assert!(gravity.tilt.to_degrees() < 0.3, "{gravity:?}");
+}
+
+/// The order of the names does not matter.
+#[test]
+fn payload_labels_have_one_order() {
+    let log = overact_identification::Log::new("own", 1000.0, 1, vec![0.0; 9], vec![0.0; 9], true);
+    let log = log.expect("a run").with_payload_name("light+heavy");
+    assert_eq!(log.payload_name(), Some("heavy+light"));
+}
+
+#[test]
 fn named_and_unnamed_payload_runs_are_not_mixed() {
     let robot = robot(&dualv(""));
     let mut runs = runs(&robot, &robot.held_out());

@@ -91,10 +91,10 @@ impl PayloadUse {
             return Ok(Self::Regrouped);
         }
         let message = format!(
-            "the runs do not distinguish the payloads {}: each is carried with others only",
+            "the runs do not distinguish the payloads {} from each other and from the robot",
             names.join(", ")
         );
-        let help = "record a run without payload and one with each payload alone, or describe payloads that are always carried together as one";
+        let help = "record a run without payload and one with each payload alone, or describe payloads that are always carried together as one, and one that all runs carry as a part of its body";
         Err(Problem::new(Code::LOG_PAYLOAD, message).help(help).into())
     }
 }

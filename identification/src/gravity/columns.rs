@@ -18,10 +18,38 @@ use crate::{
     },
     settings::Settings,
 };
-use overact_logs::{Error, Log, Problem};
+use overact_logs::{Error, Load, Log, Problem};
 
-/// Ratio of the rows of random states to the number of columns.
+/// Ratio of the rows of random states to the number of columns, for each combination of payloads.
 const STATES: usize = 2;
+
+/// Number of further states.
+const FEWEST_STATES: usize = 20;
+
+/// Random states.
+#[derive(Debug, Clone, Copy)]
+struct RandomRows {
+    /// Number of states.
+    count: usize,
+    seed: u64,
+}
+
+/// The different payloads of runs.
+fn loads(runs: &[Log]) -> Vec<Load<'_>> {
+    let mut loads: Vec<Load<'_>> = Vec::new();
+    for load in runs.iter().map(Log::carried) {
+        if !loads.contains(&load) {
+            loads.push(load);
+        }
+    }
+    loads
+}
+
+/// Row and column of each entry, in the order of the matrix.
+fn indices(matrix: &DMatrix<f64>) -> impl Iterator<Item = (usize, usize)> + use<> {
+    let (rows, columns) = matrix.shape();
+    (0..columns).flat_map(move |column| (0..rows).map(move |row| (row, column)))
+}
 
 /// Selected columns of one model.
 #[derive(Debug)]
@@ -40,7 +68,7 @@ pub(super) struct Extended {
     pub(super) along: [SelectedColumns; 3],
     /// Names of the parameters with an effect in any gravity.
     pub(super) names: Vec<String>,
-    /// B on random states.
+    /// B on random states, which carry the payloads of the runs in turn.
     pub(super) random: DMatrix<f64>,
     described: Vector3<f64>,
     /// Columns of all parameters as combinations of B, in the described gravity.
@@ -84,7 +112,13 @@ impl Extended {
             let kept = (0..columns.len()).filter(bears_weight);
             places.extend(kept.map(|column| (set, column)));
         }
-        let random = random_regressor(model, fields, &sets, &places, settings.seed)?;
+        let loads = loads(runs);
+        let rows = RandomRows {
+            count: loads.len() * (STATES * places.len()).div_ceil(model.info().sizes.dof.max(1))
+                + FEWEST_STATES,
+            seed: settings.seed,
+        };
+        let random = random_regressor(model, fields, &sets, &places, rows)?;
         let load = |place: &usize| {
             let (set, column) = places[*place];
             let is_load = sets[set].indices(true).contains(&column);
@@ -134,6 +168,18 @@ impl Extended {
             all
         };
         let (at_described, of_fields) = (coefficients(0), [1, 2, 3].map(coefficients));
+        let rows_of_state = model.info().sizes.dof.max(1);
+        let carried = |row: usize, place: usize| {
+            let (set, column) = places[kept[place]];
+            let load = loads[row / rows_of_state % loads.len()];
+            sets[set].as_slice()[column].counts(load)
+        };
+        let mut random = random.select_columns(&kept);
+        for ((row, place), value) in indices(&random).zip(random.iter_mut()) {
+            if !carried(row, place) {
+                *value = 0.0;
+            }
+        }
         let picked = |set: usize, columns: ColumnSet| SelectedColumns {
             picked: kept
                 .iter()
@@ -146,7 +192,7 @@ impl Extended {
         Ok(Self {
             own: picked(0, own.with_friction_signs(model, settings)?),
             along: [picked(1, x), picked(2, y), picked(3, z)],
-            random: random.select_columns(&kept),
+            random,
             described: Vector3::from(fields.described),
             names,
             at_described,
@@ -200,11 +246,10 @@ fn random_regressor(
     fields: &Fields<'_>,
     sets: &[ColumnSet; 4],
     places: &[(usize, usize)],
-    seed: u64,
+    rows: RandomRows,
 ) -> Result<DMatrix<f64>, Error> {
     let r = model.info().sizes.dof.max(1);
-    let count = (STATES * places.len()).div_ceil(r) + 20;
-    let states = random_states(model, count, seed)?;
+    let states = random_states(model, rows.count, rows.seed)?;
     let samples = states.samples;
     let rest = vec![0.0; states.twist.len()];
     let [x, y, z] = fields.along;

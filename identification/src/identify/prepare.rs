@@ -29,7 +29,7 @@ use crate::{
     settings::{Settings, check_partition},
 };
 use overact_logs::{
-    Error, Log,
+    Error, Log, carried_payloads,
     periods::{PeriodicMotion, periodic_motions},
 };
 
@@ -368,10 +368,11 @@ pub(super) fn prepared_warnings(prepared: &PreparedSystem, others: &[Log]) -> Ve
     }
     warnings.extend(mostly_still(prepared));
     for other in others {
-        if let Some(name) = other.payload_name()
-            && prepared.payload != PayloadUse::Absent
-            && !prepared.columns.has_load(name)
-        {
+        let label = other
+            .payload_name()
+            .filter(|_| prepared.payload != PayloadUse::Absent);
+        let mut carried = label.into_iter().flat_map(carried_payloads);
+        if let Some(name) = carried.find(|name| !prepared.columns.has_load(name)) {
             warnings.push(format!(
                 "{}: no training run carries the payload `{name}` of this validation run: it is predicted without",
                 other.name()

@@ -276,11 +276,11 @@ impl Monitor {
         let [_, noise] = self.noise();
         let samples = self.samples.max(1) as f64;
         let deviation = (QUOTIENT_VARIANCE / samples).sqrt();
-        let limit = 1.0 + ONLY_NOISE.min(ONLY_NOISE_DEVIATIONS * deviation);
+        let limit = ONLY_NOISE.min(ONLY_NOISE_DEVIATIONS * deviation);
         let found = |(actuator, at_rest): (usize, bool)| {
             let (sum, noise) = (self.torque_squares.get(actuator)?, noise.get(actuator)?);
             let quotient = sum / samples / noise;
-            (!at_rest && quotient <= limit).then(|| Suspicion {
+            (!at_rest && (quotient - 1.0).abs() <= limit).then(|| Suspicion {
                 fault: DataFault::Zero,
                 actuator: names.get(actuator).map(|name| (*name).to_owned()),
                 statistic: quotient,

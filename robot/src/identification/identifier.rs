@@ -177,7 +177,12 @@ impl<'a> Identifier<'a> {
             validation: &validation,
             ..self.clone()
         };
-        own.calibrated()
+        let mut result = own.calibrated()?;
+        if !self.gains {
+            let unintended = self.robot.description_warnings();
+            result.warnings.splice(0..0, unintended);
+        }
+        Ok(result)
     }
 
     /// Parts of runs without long standstills.

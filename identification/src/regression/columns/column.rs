@@ -164,7 +164,7 @@ impl Column {
     }
 
     /// Whether the column counts with this payload.
-    pub(super) fn counts(&self, carried: Load<'_>) -> bool {
+    pub(crate) fn counts(&self, carried: Load<'_>) -> bool {
         !self.origin.is_of_payload()
             || match &self.load {
                 Some(own) => carried.contains(own),

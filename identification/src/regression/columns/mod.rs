@@ -9,7 +9,7 @@ use crate::settings::Settings;
 use StandardParameter as P;
 use column::Origin;
 use overact::{Body, Model, Sizes, StandardParameter};
-use overact_logs::{Error, Load, carried_payloads};
+use overact_logs::{Error, Load};
 
 pub use column::{Column, Direction, is_carried, load_of};
 pub(crate) use column::{Reversal, has_payload};
@@ -98,12 +98,10 @@ impl ColumnSet {
         Self { columns, ..self }
     }
 
-    /// Whether there are columns for all payloads of a run's label, or for an unnamed one.
-    pub(crate) fn has_load(&self, label: &str) -> bool {
-        let loads = || { self.columns.iter() }.filter(|column| column.origin.is_of_payload());
-        let has =
-            |name: &str| loads().any(|column| column.load.as_deref().is_none_or(|own| own == name));
-        carried_payloads(label).all(has)
+    /// Whether there are columns for a payload of this name, or for an unnamed one.
+    pub(crate) fn has_load(&self, name: &str) -> bool {
+        let mut loads = { self.columns.iter() }.filter(|column| column.origin.is_of_payload());
+        loads.any(|column| column.load.as_deref().is_none_or(|own| own == name))
     }
 
     /// Column indices of each payload.

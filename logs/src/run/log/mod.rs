@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use crate::{
     error::{Error, Problem},
-    mapping::load::Load,
+    mapping::load::{Load, carried_payloads},
     period_sums::{MeanOfOtherPeriods, Periods},
     run::{block_ranges::BlockRanges, rows, source::Files, time_range},
     samples::Samples,
@@ -333,11 +333,14 @@ impl Log {
 
     /// The same run with a payload of this name; different names are different bodies.
     ///
-    /// The name of several payloads is `A+B` ([`carried_payloads`](crate::carried_payloads)).
+    /// The name of several payloads is `A+B`, in any order
+    /// ([`carried_payloads`](crate::carried_payloads)).
     #[must_use]
     pub fn with_payload_name(mut self, name: &str) -> Self {
+        let mut names: Vec<&str> = carried_payloads(name).collect();
+        names.sort_unstable();
         self.payload = true;
-        self.payload_name = Some(name.into());
+        self.payload_name = Some(names.join("+").into());
         self
     }
 
