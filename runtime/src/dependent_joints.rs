@@ -68,7 +68,7 @@ pub fn displace<T: Float>(
 
 /// Corrects the dependent joints of a pose until the chains close; whether the iteration converges.
 ///
-/// A step that does not reduce the largest error is halved, so that a pose beside a dead centre is
+/// A step that does not reduce the largest error is halved, so that a pose near a dead centre is
 /// not left for one that is less closed.
 fn close<T: Float>(
     pose: &mut [T],
@@ -179,7 +179,7 @@ mod tests {
     /// The unit circle ends where the abscissa is 1. A pose just beyond it has an error that no
     /// ordinate removes.
     #[test]
-    fn poses_beside_a_dead_centre_do_not_become_less_closed() {
+    fn poses_near_a_dead_centre_do_not_become_less_closed() {
         for beyond in [1e-12, 1e-9, 1e-7] {
             for height in [1e-4, 1e-6, 1e-8] {
                 let mut pose = [1.0 + beyond, height];

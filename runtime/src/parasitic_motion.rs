@@ -153,7 +153,7 @@ mod tests {
 
     /// The point is just outside the sphere, where no height closes it.
     #[test]
-    fn poses_beside_a_dead_centre_do_not_become_less_closed() {
+    fn poses_near_a_dead_centre_do_not_become_less_closed() {
         let error = |pose: &[f64]| pose[..3].iter().map(|x| x * x).sum::<f64>() - 1.0;
         for height in [1e-4, 1e-6, 1e-8] {
             let mut pose = [1.0 + 1e-7, 0.0, height, 1.0, 0.0, 0.0, 0.0];

@@ -227,7 +227,7 @@ shape = "b"
     );
 }
 
-/// A missing key is not reported beside the misspelt one.
+/// A missing key is not reported in addition to the misspelt one.
 #[test]
 fn a_misspelt_required_key_is_one_error() {
     for (key, wrong) in [("type = ", "tpye = "), ("name = \"Arm\"", "nmae = \"Arm\"")] {
