@@ -88,7 +88,7 @@ pub use calibration::{
 };
 pub use consistent::{Consistent, ConsistentBody, ConsistentParameter};
 pub use estimation::{
-    base::{BaseParameters, PayloadUse, base_parameters},
+    base::{BaseParameters, PayloadUse, base_parameters, names_of_loads},
     essential::{Drift, Essential, Removal, essential},
     estimate::{Estimation, LineError, LineNorms, estimate},
     instruments::regressor::{

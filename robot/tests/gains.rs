@@ -1,7 +1,9 @@
 //! Drive gains identified from virtual experiments with a payload of known mass.
 
 use overact::Model;
-use overact_identification::{Gains, Identification, Log, Settings, Stage, drive_gains};
+use overact_identification::{
+    CheckKind, Gains, Grade, Identification, Log, Settings, Stage, drive_gains,
+};
 use overact_robot::{Identifier, Robot, Runs};
 use overact_tier::{by_tier, drawn};
 use std::{collections::BTreeMap, f64::consts::TAU, path::Path};
@@ -172,6 +174,37 @@ fn a_weighed_payload_determines_gains_and_masses_of_a_dualv() {
             .iter()
             .map(|one| one.relative_error_percent);
         assert!(worst.fold(0.0, f64::max) < 20.0, "{:?}", result.warnings);
+    }
+}
+
+/// Each known value of the payload determines the scale; the other one tests it.
+#[test]
+fn known_values_that_contradict_each_other_are_reported() {
+    let known = |mass: &str| {
+        format!("gains = true\nknown = {{ m_payload = \"{mass}\", mx_payload = -0.127 }}")
+    };
+    let true_robot = robot(&coarse(&known("5.42 kg")));
+    let exact = exact(&true_robot, 1.0);
+    let runs = logged(&exact.identified, &TRUE_GAINS, &[0.5; 4], 1);
+    let check = |mass: &str| {
+        let robot = robot(&coarse(&known(mass)));
+        let result = Identifier::new(&robot).runs(&runs).gains(true).run();
+        let checks = result.expect("an identification").checks;
+        let mut known = checks.into_iter();
+        known
+            .find(|one| one.kind == CheckKind::KnownValues)
+            .expect("a check of the known values")
+    };
+    let right = check("5.42 kg");
+    assert!(right.passed, "{right:?}");
+    let wrong = check("6.2 kg");
+    assert_eq!(wrong.grade, Grade::DoNotUse, "{wrong:?}");
+    for part in [
+        "contradict",
+        "`m_payload` is known to be 6.2 kg",
+        "`mx_payload`",
+    ] {
+        assert!(wrong.words.contains(part), "{part}: {}", wrong.words);
     }
 }
 

@@ -1,9 +1,9 @@
 //! Several named payloads: each has its own parameters, and known masses determine the drive gains.
 
 use overact_identification::{Estimator, Identification, ParameterEstimate, Stage};
-use overact_robot::{Identifier, Robot, Runs};
+use overact_robot::{Excitation, ExcitationEffort, Identifier, Robot, Runs};
 use overact_tier::by_tier;
-use std::path::Path;
+use std::{path::Path, time::Duration};
 
 fn text(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots");
@@ -287,6 +287,33 @@ fn gravity_is_identified_from_runs_with_different_payloads() {
 }
 
 /// The order of the names does not matter.
+/// More or fewer runs than described carry the described payloads in turn.
+#[test]
+fn exciting_runs_carry_the_described_payloads() {
+    let robot = robot(&rx90_with(&[UNLOADED, HEAVY, BOTH]));
+    let found = |runs: usize| {
+        let effort = ExcitationEffort {
+            runs: Some(runs),
+            seed: 1,
+            generations: 1,
+            time: Some(Duration::from_secs(1)),
+        };
+        robot.excite(&effort, &|_, _| ()).expect("exciting runs")
+    };
+    let own = |found: &Excitation| -> Vec<String> {
+        let lines = found.tables.lines();
+        let payloads = lines.filter(|line| line.starts_with("payload"));
+        payloads.map(str::to_owned).collect()
+    };
+    let carried = ["payload = \"heavy\"", "payload = [\"heavy\", \"light\"]"];
+    let five = found(5);
+    assert_eq!(own(&five), [carried[0], carried[1], carried[0]]);
+    let two = found(2);
+    assert_eq!(own(&two), [carried[0]]);
+    // The second payload has ten inertial parameters more.
+    assert_eq!(five.base_parameters, two.base_parameters + 10);
+}
+
 #[test]
 fn payload_labels_have_one_order() {
     let log = overact_identification::Log::new("own", 1000.0, 1, vec![0.0; 9], vec![0.0; 9], true);

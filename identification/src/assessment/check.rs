@@ -185,6 +185,8 @@ pub enum CheckKind {
     WrongSign,
     /// A drive's torque is wrong by a factor.
     WrongGain,
+    /// Known values contradict each other.
+    KnownValues,
     /// The payload contradicts the label of a run.
     PayloadLabel,
     /// Torques and motion are shifted in time.
@@ -244,6 +246,7 @@ impl CheckKind {
             Self::SwappedColumns => "swapped columns",
             Self::WrongSign => "wrong sign",
             Self::WrongGain => "wrong gain",
+            Self::KnownValues => "known values",
             Self::PayloadLabel => "payload label",
             Self::Delay => "delay",
             Self::Clock => "clock",

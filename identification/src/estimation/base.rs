@@ -22,7 +22,7 @@ use crate::regression::{
     elimination::{Elimination, eliminate},
     states::random_states,
 };
-use overact_logs::{Error, Log, Problem, carried_payloads};
+use overact_logs::{Error, Load, Log, Problem, carried_payloads};
 
 /// A column is dependent if its part outside the kept ones is below this fraction of its norm.
 pub(crate) const RANK_TOLERANCE: f64 = 1e-9;
@@ -50,8 +50,8 @@ impl PayloadUse {
             .payload_parameters
             .iter()
             .any(|one| load_of(one).is_some());
-        let labels: Vec<RunPayload<'_>> = runs.iter().map(RunPayload::of).collect();
-        let own = Self::of_labels(&labels)?;
+        let loads: Vec<Load<'_>> = runs.iter().map(Log::carried).collect();
+        let own = Self::of_loads(&loads)?;
         if of_bodies && own == Self::Regrouped && payload_names(runs).len() > 1 {
             let message = "all runs carry a payload, and the payloads are on bodies of their own: none of them can be distinguished from its body";
             let help = "record a run without payload, or identify the payloads one by one";
@@ -60,16 +60,16 @@ impl PayloadUse {
         Ok(own)
     }
 
-    /// Determines how runs with these labels carry payloads.
+    /// Determines how runs with these loads carry payloads.
     ///
     /// The torques of a run are those of the robot and of each carried payload. They are separate if
     /// the labels, as rows of a 1 for the robot and one for each carried payload, have full rank.
     ///
     /// # Errors
     /// Payloads that the labels do not distinguish from each other, or from the robot.
-    pub(crate) fn of_labels(runs: &[RunPayload<'_>]) -> Result<Self, Error> {
-        let loaded = runs.iter().filter(|run| run.loaded).count();
-        let names = names_of_labels(runs.iter().filter_map(|run| run.label));
+    pub fn of_loads(runs: &[Load<'_>]) -> Result<Self, Error> {
+        let loaded = runs.iter().filter(|run| run.is_some()).count();
+        let names = names_of_loads(runs.iter().copied());
         if loaded == 0 {
             return Ok(Self::Absent);
         }
@@ -77,17 +77,16 @@ impl PayloadUse {
             let all = loaded == runs.len();
             return Ok(if all { Self::Regrouped } else { Self::Separate });
         }
-        let carried = |row: usize, column: usize| match runs.get(row).and_then(|run| run.label) {
-            _ if column == 0 => 1.0,
-            Some(label) if carried_payloads(label).any(|one| one == names[column - 1]) => 1.0,
-            _ => 0.0,
+        let carried = |row: usize, column: usize| {
+            let is_carried = column == 0 || runs[row].contains(&names[column - 1]);
+            f64::from(u8::from(is_carried))
         };
         let rows = DMatrix::from_fn(runs.len(), names.len() + 1, carried);
         if rows.rank(RANK_TOLERANCE) > names.len() {
             return Ok(Self::Separate);
         }
-        let mut labels = runs.iter().filter_map(|run| run.label);
-        if loaded == runs.len() && labels.all(|label| carried_payloads(label).count() == 1) {
+        let mut all = runs.iter();
+        if loaded == runs.len() && all.all(|run| names_of_loads([*run].into_iter()).len() == 1) {
             return Ok(Self::Regrouped);
         }
         let message = format!(
@@ -96,25 +95,6 @@ impl PayloadUse {
         );
         let help = "record a run without payload and one with each payload alone, or describe payloads that are always carried together as one, and one that all runs carry as a part of its body";
         Err(Problem::new(Code::LOG_PAYLOAD, message).help(help).into())
-    }
-}
-
-/// Payload of a run: whether there is one, and its label if payloads have names.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct RunPayload<'a> {
-    /// Whether the run carries a payload.
-    pub(crate) loaded: bool,
-    /// Its name, or several names with plus signs.
-    pub(crate) label: Option<&'a str>,
-}
-
-impl<'a> RunPayload<'a> {
-    /// The payload of a log.
-    fn of(log: &'a Log) -> Self {
-        Self {
-            loaded: log.payload(),
-            label: log.payload_name(),
-        }
     }
 }
 
@@ -364,13 +344,17 @@ fn relative(base: &mut BaseParameters, columns: &ColumnSet) {
 
 /// Names of the payloads that runs carry, in the order of the runs; empty without names.
 pub(crate) fn payload_names(runs: &[Log]) -> Vec<String> {
-    names_of_labels(runs.iter().filter_map(Log::payload_name))
+    names_of_loads(runs.iter().map(Log::carried))
 }
 
-/// Names of the payloads of labels, in their order.
-pub(crate) fn names_of_labels<'a>(labels: impl Iterator<Item = &'a str>) -> Vec<String> {
+/// Names of the payloads of loads, in their order; empty without names.
+pub fn names_of_loads<'a>(loads: impl Iterator<Item = Load<'a>>) -> Vec<String> {
+    let label = |load| match load {
+        Load::Named(label) => Some(label),
+        Load::Nothing | Load::Any => None,
+    };
     let mut names: Vec<String> = Vec::new();
-    for name in labels.flat_map(carried_payloads) {
+    for name in loads.filter_map(label).flat_map(carried_payloads) {
         if !names.iter().any(|one| one == name) {
             names.push(name.to_owned());
         }

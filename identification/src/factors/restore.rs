@@ -9,7 +9,7 @@ use super::{
     run::RunFactors,
 };
 use crate::{
-    estimation::base::{BaseParameters, PayloadUse, RunPayload, base_parameters, names_of_labels},
+    estimation::base::{BaseParameters, PayloadUse, base_parameters, names_of_loads},
     identify::{PreparedSystem, session_numbers},
     regression::{
         columns::{ColumnSet, has_payload},
@@ -102,19 +102,13 @@ fn payload_use(runs: &[RunFactors]) -> Result<PayloadUse, Error> {
             .help(help)
             .into());
     }
-    let labels = runs.iter().map(|run| RunPayload {
-        loaded: run.summary.payload,
-        label: run.summary.payload_name.as_deref(),
-    });
-    PayloadUse::of_labels(&labels.collect::<Vec<_>>())
+    let loads: Vec<Load<'_>> = runs.iter().map(|run| run.summary.carried()).collect();
+    PayloadUse::of_loads(&loads)
 }
 
 /// Names of the payloads, in the order of the runs.
 fn names(runs: &[RunFactors]) -> Vec<String> {
-    let labels = runs
-        .iter()
-        .filter_map(|run| run.summary.payload_name.as_deref());
-    names_of_labels(labels)
+    names_of_loads(runs.iter().map(|run| run.summary.carried()))
 }
 
 /// For each base parameter the column of the run; `None` if it is zero.

@@ -15,11 +15,13 @@
 //! - `selection`: columns that are independent on the data;
 //! - `noise`: noise of the drives' signals, from the residuals;
 //! - `solve`: generalised total least squares with exact columns W and w;
+//! - `known_values`: whether several known values agree;
 //! - `deviations`: standard deviations of the gains;
 //! - `result`: the result.
 
 mod deviations;
 mod known;
+pub(crate) mod known_values;
 mod noise;
 mod observation;
 mod result;
@@ -31,9 +33,10 @@ pub use result::{DriveGain, Gains, JointParameter};
 use overact::Code;
 use overact::Model;
 
-use crate::{regression::factor::Factor, settings::Settings};
+use crate::settings::Settings;
 use deviations::deviations;
 use known::Split;
+use known_values::{RedundantValue, contradiction, redundant_values};
 use observation::Observer;
 use overact_logs::{Error, Log, Problem, significant};
 use selection::{Selection, undetermined};
@@ -64,7 +67,7 @@ pub fn drive_gains(
         settings,
     };
     let equations = observer.equations(runs, progress)?;
-    let count = equations.system.lines.iter().map(Factor::equations).sum();
+    let count = equations.count();
     let unknowns = split.base.columns.len() + info.sizes.actuators;
     if count <= unknowns {
         let message = format!("{count} equations do not determine {unknowns} gains and parameters");
@@ -72,9 +75,26 @@ pub fn drive_gains(
         return Err(Problem::new(Code::GAINS, message).help(help).into());
     }
     let selection = Selection::new(&equations, info.actuators)?;
-    let solution = solve(&equations, &selection)?;
-    let all = || info.actuators.iter().map(|name| format!("`{name}`"));
-    let sure = deviations(&equations, &selection, &solution);
+    let redundant = redundant_values(&equations, &selection, &split);
+    let contradiction = contradiction(&redundant);
+    determined(&equations, &selection, &split, info.actuators, redundant)
+        .map_err(|error| contradiction.unwrap_or(error))
+}
+
+/// Gains and parameters of the selected columns.
+///
+/// # Errors
+/// Gains that the data do not determine.
+fn determined(
+    equations: &Equations,
+    selection: &Selection,
+    split: &Split,
+    actuators: &[&str],
+    redundant: Vec<RedundantValue>,
+) -> Result<Gains, Error> {
+    let solution = solve(equations, selection)?;
+    let all = || actuators.iter().map(|name| format!("`{name}`"));
+    let sure = deviations(equations, selection, &solution);
     let sure = sure.ok_or_else(|| undetermined(&all().collect::<Vec<_>>(), ""))?;
     let (parameters, drives) = sure.all.split_at(selection.parameters());
     let each = solution.gains().iter().zip(drives).zip(all());
@@ -89,7 +109,7 @@ pub fn drive_gains(
         let why = format!(" to a {DETERMINED}th of themselves");
         return Err(undetermined(&unsure, &why));
     }
-    let plain = total_least_squares(&equations, &selection, &solution);
+    let plain = total_least_squares(equations, selection, &solution);
     let drive = |(index, name): (usize, &&str)| DriveGain {
         actuator: (*name).to_owned(),
         factor: solution.gains()[index],
@@ -107,9 +127,10 @@ pub fn drive_gains(
         }
     };
     Ok(Gains {
-        drives: info.actuators.iter().enumerate().map(drive).collect(),
+        drives: actuators.iter().enumerate().map(drive).collect(),
         parameters: parameters.iter().enumerate().map(parameter).collect(),
-        equations: count,
+        equations: equations.count(),
+        redundant,
         covariance: sure.gains,
     })
 }

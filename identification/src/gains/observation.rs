@@ -1,6 +1,7 @@
-//! One pass over the runs: decimated equations [W V | w] of all lines, and moments for the noise.
+//! One pass over the runs: decimated equations [W V K | w] of all lines, and moments for the noise.
 //!
-//! Line i of a sample is Σ_j (J_p^inv)ᵀ_ij τ_j g_j = W_i χ + w_i. The columns of V are filtered and
+//! K has the columns of the known parameters if there are several, to test whether they agree. Line
+//! i of a sample is Σ_j (J_p^inv)ᵀ_ij τ_j g_j = W_i χ + w_i. The columns of V are filtered and
 //! decimated like torques. As Γ¹ = (J_p^inv)ᵀ τ, noise of τ_j with variance σ_j² has the covariance
 //! σ_j² J_ji J_jl in lines i and l. The `moments` are the means of J_ji J_jl over all samples.
 
@@ -13,8 +14,8 @@ use crate::{
     blocks::{BLOCK, slice},
     kinematics::{self, Motion},
     regression::{
-        pass::Pass, projection::Projection, sink::LARGEST_STRETCHES, states::SampledStates,
-        system::System,
+        factor::Factor, pass::Pass, projection::Projection, sink::LARGEST_STRETCHES,
+        states::SampledStates, system::System,
     },
     settings::Settings,
 };
@@ -23,10 +24,20 @@ use overact_logs::{Error, Log, Problem};
 /// Equations of all runs.
 #[derive(Debug)]
 pub(super) struct Equations {
-    /// Columns of unknown base parameters, then one for each actuator; w on the right.
+    /// Columns of unknown base parameters, one for each actuator, those of known parameters if there
+    /// are several; w on the right.
     pub(super) system: System,
+    /// Number of columns of known parameters.
+    pub(super) known: usize,
     /// For each actuator j, the means of J_ji J_jl, r × r.
     pub(super) moments: Vec<DMatrix<f64>>,
+}
+
+impl Equations {
+    /// Number of equations of all lines.
+    pub(super) fn count(&self) -> usize {
+        self.system.lines.iter().map(Factor::equations).sum()
+    }
 }
 
 /// Options of the observation, the same for all runs.
@@ -63,6 +74,7 @@ impl Observer<'_> {
         let (r, n) = (info.sizes.dof, info.sizes.actuators);
         let mut equations = Equations {
             system: System::new(Projection::Platform, &info, self.columns()),
+            known: self.known(),
             moments: vec![DMatrix::zeros(r, r); n],
         };
         let (mut samples, mut problems) = (0, Vec::new());
@@ -78,9 +90,17 @@ impl Observer<'_> {
         Ok(equations)
     }
 
-    /// Number of unknowns: base parameters and gains.
+    /// Number of columns: base parameters, gains and known parameters.
     fn columns(&self) -> usize {
-        self.split.base.columns.len() + self.model.info().sizes.actuators
+        self.split.base.columns.len() + self.model.info().sizes.actuators + self.known()
+    }
+
+    /// Number of columns of known parameters: none if a single one cannot be tested.
+    fn known(&self) -> usize {
+        match self.split.known.len() {
+            0 | 1 => 0,
+            several => several,
+        }
     }
 
     /// Adds the equations of a run, and returns the number of its samples.
@@ -163,7 +183,8 @@ impl Observer<'_> {
         })
     }
 
-    /// Rows of a line: columns of unknown parameters, contributions of the drives, and w.
+    /// Rows of a line: columns of unknown parameters, contributions of the drives, columns of known
+    /// parameters, and w.
     ///
     /// `rows` have `width` columns of unknown and known parameters.
     fn joined<'v>(
@@ -178,6 +199,7 @@ impl Observer<'_> {
             let (own, known) = row.split_at(unknown);
             all.extend_from_slice(own);
             all.extend(factors.zip(torques).map(|(factor, torque)| factor * torque));
+            all.extend_from_slice(&known[..self.known()]);
             let values = self.split.known.iter().map(|own| own.value);
             all.push(known.iter().zip(values).map(|(a, b)| a * b).sum());
         }

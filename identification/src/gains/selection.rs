@@ -21,19 +21,19 @@ pub(super) struct Selection {
 }
 
 impl Selection {
-    /// Selects the columns that are independent on the data; `actuators` names the drives.
+    /// Selects the columns that are independent on the data, without those of known parameters;
+    /// `actuators` names the drives.
     ///
     /// # Errors
     /// Drives whose columns depend on others.
     pub(super) fn new(equations: &Equations, actuators: &[&str]) -> Result<Self, Error> {
         let lines = &equations.system.lines;
-        let weights: Vec<f64> = lines.iter().map(|line| 1.0 / size(line)).collect();
-        let factor = Factor::merged(lines, &weights);
+        let factor = Factor::merged(lines, &Self::weights(lines));
         let drives = actuators.len();
-        let unknown = factor.parameters() - drives;
+        let unknown = factor.parameters() - drives - equations.known;
         let order: Vec<usize> = (0..unknown).collect();
         let found = eliminate(factor.matrix(), &order, DATA_RANK_TOLERANCE);
-        let all: Vec<usize> = (unknown..factor.parameters()).collect();
+        let all: Vec<usize> = (unknown..unknown + drives).collect();
         let columns = [found.kept, all.clone()].concat();
         let kept = eliminate(factor.matrix(), &columns, RANK_TOLERANCE).kept;
         let missing = all.iter().filter(|column| !kept.contains(column));
@@ -48,6 +48,18 @@ impl Selection {
                 ", whose torques are combinations of what the parameters and the other drives explain",
             ))
         }
+    }
+
+    /// Weights that scale lines before their noise is known.
+    pub(super) fn weights(lines: &[Factor]) -> Vec<f64> {
+        lines.iter().map(|line| 1.0 / size(line)).collect()
+    }
+
+    /// The same with one more parameter, the last before the gains.
+    pub(super) fn with_column(&self, column: usize) -> Self {
+        let mut columns = self.columns.clone();
+        columns.insert(self.parameters(), column);
+        Self { columns, ..*self }
     }
 
     /// Number of parameters, without the gains.

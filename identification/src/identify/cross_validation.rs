@@ -12,7 +12,7 @@ use crate::{
     settings::Settings,
     validation::{Candidate, Validation, validate},
 };
-use overact_logs::{Error, Log};
+use overact_logs::{Error, Load, Log};
 
 /// Results on the validation runs.
 #[derive(Default)]
@@ -92,7 +92,7 @@ pub(super) fn cross_validate(
         let report = |done, samples| progress(Progress::Validation { run, done, samples });
         match validate(&observer, log, &candidates, &report) {
             Ok(validated) => {
-                all.push((log.payload(), validated.validations));
+                all.push((log.carried(), validated.validations));
                 results.motions.push(validated.motion);
                 results.watched.push(RunMonitor {
                     monitor: validated.monitor,
@@ -105,8 +105,8 @@ pub(super) fn cross_validate(
     Error::check(problems)?;
     // In the order of the estimates, each on all runs.
     for (index, predictor) in predictors.iter().enumerate() {
-        for (payload, validations) in &all {
-            results.add(predictor, *payload, &validations[index]);
+        for (carried, validations) in &all {
+            results.add(predictor, *carried, &validations[index]);
         }
     }
     Ok(results)
@@ -114,11 +114,11 @@ pub(super) fn cross_validate(
 
 impl ValidationRunResults {
     /// Adds the result of an estimate on a run.
-    fn add(&mut self, own: &Predictor, payload: bool, validation: &Result<Validation, Error>) {
+    fn add(&mut self, own: &Predictor, carried: Load<'_>, validation: &Result<Validation, Error>) {
         match validation {
             Ok(validation) => {
                 let validation =
-                    CrossValidation::new(own.model, own.stage, payload, validation.clone());
+                    CrossValidation::new(own.model, own.stage, carried, validation.clone());
                 self.validations.push(validation);
                 self.owners.push(own.projection);
             }

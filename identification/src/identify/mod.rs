@@ -185,7 +185,7 @@ pub fn identify_after(
     stage("position noise");
     let column_noise = prepared.column_noise(model, dataset.runs, settings)?;
     let ranges = prepared.ranges(model);
-    let checks = assessment::checks(
+    let mut checks = assessment::checks(
         &Context {
             model,
             dataset,
@@ -205,6 +205,9 @@ pub fn identify_after(
         },
         &|name| progress(Progress::Check { name }),
     )?;
+    if let PriorStage::Gains(gains) = before {
+        checks.splice(0..0, gains.check());
+    }
     stage("plots");
     let failed = checks.iter().filter(|check| !check.passed);
     warnings.extend(failed.map(Check::located));

@@ -9,6 +9,7 @@ use crate::{
     series::Series,
     validation::{TorqueComparison, Validation},
 };
+use overact_logs::Load;
 
 /// Prediction of a validation run by an estimate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -17,6 +18,9 @@ pub struct CrossValidation {
     pub run: String,
     /// Whether the platform carried the payload.
     pub payload: bool,
+    /// Name of the payload, if there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub payload_name: Option<String>,
     /// Model of the estimate.
     pub model: ModelKind,
     /// Stage of the estimate.
@@ -46,10 +50,14 @@ pub struct CrossValidation {
 impl CrossValidation {
     /// Combines a validation with the model and stage of its estimate.
     #[must_use]
-    pub fn new(model: ModelKind, stage: Stage, payload: bool, validation: Validation) -> Self {
+    pub fn new(model: ModelKind, stage: Stage, carried: Load<'_>, validation: Validation) -> Self {
         Self {
             run: validation.run,
-            payload,
+            payload: carried.is_some(),
+            payload_name: match carried {
+                Load::Named(label) => Some(label.to_owned()),
+                Load::Nothing | Load::Any => None,
+            },
             model,
             stage,
             residual_norm: validation.residual_norm,

@@ -4,7 +4,7 @@ use serde::Serialize;
 use std::collections::BTreeSet;
 
 use crate::regression::observation::RunObservation;
-use overact_logs::Log;
+use overact_logs::{Load, Log};
 
 /// A training run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -37,6 +37,13 @@ impl RunSummary {
     pub(crate) fn sessions(runs: &[Self]) -> usize {
         let names: BTreeSet<Option<&str>> = runs.iter().map(|run| run.session.as_deref()).collect();
         names.len()
+    }
+
+    /// Payload of the run.
+    #[must_use]
+    pub fn carried(&self) -> Load<'_> {
+        let own = self.payload_name.as_deref().map(Load::Named);
+        own.unwrap_or(Load::from(self.payload))
     }
 
     /// Summary of a run.

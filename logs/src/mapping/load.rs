@@ -21,7 +21,17 @@ pub fn carried_payloads(label: &str) -> impl Iterator<Item = &str> {
     label.split('+')
 }
 
-impl Load<'_> {
+impl<'a> Load<'a> {
+    /// The payload for tables: `no`, `yes`, or its names.
+    #[must_use]
+    pub const fn words(self) -> &'a str {
+        match self {
+            Self::Nothing => "no",
+            Self::Any => "yes",
+            Self::Named(label) => label,
+        }
+    }
+
     /// Whether there is a payload.
     #[must_use]
     pub fn is_some(self) -> bool {

@@ -110,7 +110,7 @@ fn runs(identification: &Identification) -> String {
             run.name.clone(),
             run.samples.to_string(),
             format!("{:.1}", run.sampling_frequency),
-            String::from(if run.payload { "yes" } else { "no" }),
+            run.carried().words().to_owned(),
         ]
     });
     format!(

@@ -1,6 +1,7 @@
 //! Fixed settings of a run, and its motion as a Fourier series.
 
 use overact_codegen::description::{Description, JointKind, independent_joints};
+use overact_identification::Load;
 use overact_simulation::{Term, Trajectory};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -29,6 +30,14 @@ pub(super) struct FourierRun {
     pub(super) own_duration: Option<f64>,
     /// Duration, s.
     pub(super) duration: f64,
+}
+
+impl FourierRun {
+    /// Payload of the run.
+    pub(super) fn carried(&self) -> Load<'_> {
+        let own = self.payload_name.as_deref().map(Load::Named);
+        own.unwrap_or(Load::from(self.payload))
+    }
 }
 
 /// Training runs of a description.
@@ -76,12 +85,9 @@ pub(super) fn wanted(
 ) -> Vec<FourierRun> {
     let table = description.excitation.as_ref();
     let experiment = description.experiment.as_ref();
-    let carries = description
-        .platform
-        .as_ref()
-        .is_some_and(|p| p.payload.is_some());
+    let loads = loads(description, described);
     let usual = match described.len() {
-        0 => 1 + usize::from(carries),
+        0 => loads.len(),
         count => count,
     };
     let count = runs.or(table.and_then(|t| t.runs)).unwrap_or(usual);
@@ -98,12 +104,14 @@ pub(super) fn wanted(
     let taken: BTreeSet<&str> = held_out.map(|run| run.name.value.as_str()).collect();
     let numbers = (1..).map(|number| format!("excitation {number}"));
     let names = numbers.filter(|name| !taken.contains(name.as_str()));
-    let named = || description.payloads.iter().map(|name| name.value.clone());
     let frame = |(index, name): (usize, String)| {
         let like = described
             .get(index % described.len().max(1))
             .map(|(frame, _)| frame);
-        let second_half = carries && 2 * index >= count && count > 1;
+        let own = match like.filter(|_| count == described.len()) {
+            Some(frame) => frame.carried(),
+            None => loads[index % loads.len()],
+        };
         FourierRun {
             name,
             fundamental: table
@@ -111,13 +119,10 @@ pub(super) fn wanted(
                 .or(like.map(|frame| frame.fundamental))
                 .unwrap_or(BANDWIDTH_SHARE * bandwidth / harmonics as f64),
             harmonics,
-            payload: match like.filter(|_| count == described.len()) {
-                Some(frame) => frame.payload,
-                None => second_half,
-            },
-            payload_name: match like.filter(|_| count == described.len()) {
-                Some(frame) => frame.payload_name.clone(),
-                None => named().next().filter(|_| second_half),
+            payload: own.is_some(),
+            payload_name: match own {
+                Load::Named(label) => Some(label.to_owned()),
+                Load::Nothing | Load::Any => None,
             },
             own_duration: like.and_then(|frame| frame.own_duration),
             duration: like.map_or(duration, |frame| frame.duration),
@@ -125,6 +130,30 @@ pub(super) fn wanted(
     };
     let frames: Vec<FourierRun> = names.take(count).enumerate().map(frame).collect();
     frames
+}
+
+/// Payloads that runs carry in turn: those of the described runs, else none and each one alone.
+fn loads<'a>(
+    description: &'a Description,
+    described: &'a [(FourierRun, Trajectory)],
+) -> Vec<Load<'a>> {
+    let mut loads: Vec<Load<'_>> = Vec::new();
+    for (frame, _) in described {
+        if !loads.contains(&frame.carried()) {
+            loads.push(frame.carried());
+        }
+    }
+    if !loads.is_empty() {
+        return loads;
+    }
+    let mut platform = description.platform.iter();
+    let named = description.payloads.iter();
+    loads.push(Load::Nothing);
+    loads.extend(named.map(|name| Load::Named(&name.value)));
+    if loads.len() == 1 && platform.any(|platform| platform.payload.is_some()) {
+        loads.push(Load::Any);
+    }
+    loads
 }
 
 /// Names of the coordinates in the description, and whether each is a length.

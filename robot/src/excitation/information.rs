@@ -9,8 +9,8 @@ use crate::error::{Error, Problem};
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use overact_codegen::diagnostic::Code;
 use overact_identification::{
-    BaseParameters, ColumnSet, ModelKind, PayloadUse, Projection, SampledStates, Settings,
-    base_parameters,
+    BaseParameters, ColumnSet, Load, ModelKind, PayloadUse, Projection, SampledStates, Settings,
+    base_parameters, names_of_loads,
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -65,18 +65,15 @@ impl Question {
         truth: Option<&BTreeMap<String, f64>>,
         measurement: TorqueMeasurement,
     ) -> Result<Self, Error> {
-        let loaded = frames.iter().filter(|frame| frame.payload).count();
-        let payload = match loaded {
-            0 => PayloadUse::Absent,
-            all if all == frames.len() => PayloadUse::Regrouped,
-            _ => PayloadUse::Separate,
-        };
+        let loads: Vec<Load<'_>> = frames.iter().map(FourierRun::carried).collect();
+        let payload = PayloadUse::of_loads(&loads)?;
         let columns = ColumnSet::new(
             bench.model,
-            loaded > 0,
+            payload != PayloadUse::Absent,
             settings.asymmetric_friction,
             settings.seed,
         )?
+        .with_payloads(&names_of_loads(loads.into_iter()))
         .with_friction_signs(bench.model, settings)?;
         let base = base_parameters(bench.model, &columns, payload, settings.seed)?;
         let sizes = bench.info.sizes;
@@ -125,7 +122,7 @@ impl Question {
             pose: &course.states.pose,
             twist: &course.states.twist,
             acceleration: &course.states.acceleration,
-            carried: frame.payload.into(),
+            carried: frame.carried(),
         };
         let lines = self
             .columns

@@ -58,7 +58,7 @@ fn runs(identification: &Identification) -> String {
             Cell::number(run.samples.to_string()),
             Cell::digits(Some(run.sampling_frequency), 6),
             Cell::digits(Some(run.samples as f64 / run.sampling_frequency), 4),
-            Cell::text(if run.payload { "yes" } else { "no" }),
+            Cell::text(run.carried().words()),
             Cell::digits(Some(run.closure_residual), 3),
         ]
     });

@@ -116,6 +116,7 @@ fn cross_validation(model: ModelKind) -> CrossValidation {
     CrossValidation {
         run: String::from("held out"),
         payload: false,
+        payload_name: None,
         model,
         stage: Stage::Recommended,
         residual_norm: 1.0,
