@@ -257,6 +257,19 @@ fn two_known_payload_masses_determine_gains_of_a_parallel_robot() {
 }
 
 #[test]
+fn known_masses_of_payloads_that_no_run_carries_are_located() {
+    let refused = |known: &str| {
+        let robot = robot(&dualv(&format!("gains = true\nknown = {{ {known} = 2 }}")));
+        let mut runs = runs(&robot, &[]).identified;
+        runs.retain(|log| log.payload_name() != Some("light"));
+        let refused = Identifier::new(&robot).runs(&runs).gains(true).run();
+        refused.expect_err("no gains").render(false)
+    };
+    let error = refused("m_payload_light");
+    assert!(error.contains("no run carries"), "{error}");
+}
+
+#[test]
 fn known_masses_without_gains_are_warned_about() {
     let robot = robot(&dualv("known = { m_payload_heavy = \"5.42 kg\" }"));
     let runs = runs(&robot, &robot.held_out());

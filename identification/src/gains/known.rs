@@ -100,13 +100,12 @@ fn found(
                 column,
                 value: *value,
             });
-        } else if info.payload_parameters.iter().any(|one| one.name == name) {
-            problems.push(
-                Problem::new(Code::GAINS, format!(
-                    "gains are not determined: `{name}` is known, but no run carries the payload"
-                ))
-                .help("also record runs with the payload, and mark them with --payload-data"),
-            );
+        } else if info
+            .payload_parameters
+            .iter()
+            .any(|one| is_of(name, one.name))
+        {
+            problems.push(not_carried(name, columns));
         } else {
             let problem = Problem::new(Code::GAINS, format!("the robot has no parameter `{name}`"));
             let names = all.iter().map(|one| one.name.as_str());
@@ -118,6 +117,31 @@ fn found(
     }
     Error::check(problems)?;
     Ok(known)
+}
+
+/// Whether a name is that of a payload's parameter, or of a named payload's.
+fn is_of(name: &str, parameter: &str) -> bool {
+    let rest = name.strip_prefix(parameter);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
+}
+
+/// The problem of a known parameter of a payload that no run carries.
+fn not_carried(name: &str, columns: &ColumnSet) -> Problem {
+    let all = columns.as_slice().iter().map(|one| &one.name);
+    let named: Vec<String> = all
+        .filter(|one| one.as_str() != name && is_of(one, name))
+        .map(|one| format!("`{one}`"))
+        .collect();
+    let problem = |why: &str| {
+        let message = format!("gains are not determined: `{name}` is known, but {why}");
+        Problem::new(Code::GAINS, message)
+    };
+    if named.is_empty() {
+        problem("no run carries the payload")
+            .help("also record runs with the payload, and mark them with --payload-data")
+    } else {
+        problem("the payloads have names").help(format!("give {} instead", named.join(" or ")))
+    }
 }
 
 /// Why a known parameter does not fix the scale; its column is a combination of `others`.
