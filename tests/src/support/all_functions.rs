@@ -41,7 +41,8 @@ pub fn of_functions(
     };
     let model = model_with(&source, &request)?;
     let mechanism = reference(&model.mechanism, workspace(&model));
-    let expected = Expected::by_position(&model, mechanism);
+    let mut expected = Expected::by_position(&model, mechanism);
+    expected.tolerance_of_derivatives = of_others;
     let parameters = expected.parameters();
     let all = samples(&expected.mechanism, &parameters, states, 7, false)?;
     let truths = all.iter().map(|sample| expected.at(sample));

@@ -19,10 +19,10 @@ const STEP: f64 = 4e-3;
 const SMALLEST: f64 = 3e-5;
 /// Largest difference between the results of two steps, relative to the largest entry.
 const AGREEMENT: f64 = 2e-10;
-/// The same if no two steps agree as well: far below the tolerances of the tests.
-const SUFFICIENT: f64 = 5e-9;
+/// The same if no two steps agree as well, relative to the tolerance of the comparison.
+const SUFFICIENT: f64 = 0.05;
 
-/// Output of a function; `None` for those of other kinds.
+/// Output of a function that is compared within `tolerance`; `None` for those of other kinds.
 ///
 /// # Errors
 ///
@@ -31,6 +31,7 @@ pub fn output(
     dynamics: &Dynamics<'_>,
     function: Function,
     sample: &Sample,
+    tolerance: f64,
 ) -> Result<Option<DMatrix<f64>>, Failure> {
     let (mechanism, state) = (dynamics.mechanism, dynamics.state);
     let chi = &sample.all_parameters;
@@ -64,7 +65,7 @@ pub fn output(
             displaced(mechanism, state, direction)
         }
     };
-    differences(mechanism.dof(), &moved, &value).map(Some)
+    differences(mechanism.dof(), &moved, &value, tolerance).map(Some)
 }
 
 /// The state at a displaced pose, with the same twist and acceleration.
@@ -117,7 +118,8 @@ pub fn faster(
     )?)
 }
 
-/// Derivatives of a quantity along `count` directions, one column for each.
+/// Derivatives of a quantity along `count` directions, one column for each, to be compared within
+/// `tolerance`.
 ///
 /// # Errors
 ///
@@ -126,6 +128,7 @@ pub fn differences(
     count: usize,
     moved: &dyn Fn(&DVector<f64>) -> Result<State, Failure>,
     value: &dyn Fn(&State) -> Result<DVector<f64>, Failure>,
+    tolerance: f64,
 ) -> Result<DMatrix<f64>, Failure> {
     let column = |k: usize, step: f64| -> Result<DVector<f64>, Failure> {
         let at = |n: i32| {
@@ -147,7 +150,7 @@ pub fn differences(
     };
     let mut step = STEP;
     let mut before = matrix(step);
-    let mut best = (SUFFICIENT, None);
+    let mut best = (SUFFICIENT * tolerance, None);
     while step > SMALLEST {
         step *= 0.5;
         let now = matrix(step);

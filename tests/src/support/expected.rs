@@ -35,6 +35,8 @@ pub struct Expected {
     pub kept: Vec<usize>,
     /// Frames on bodies.
     pub frames: Frames,
+    /// Relative tolerance of the comparison of derivatives, which are computed by differences.
+    pub tolerance_of_derivatives: f64,
 }
 
 /// Tolerance of the comparison with the reference.
@@ -79,6 +81,7 @@ impl Expected {
             payload: columns(&model.selection.payload)?,
             kept: model.selection.kept_actuators.clone(),
             frames: Frames::of(&model.mechanism),
+            tolerance_of_derivatives: TOLERANCE,
             mechanism,
         })
     }
@@ -119,6 +122,7 @@ impl Expected {
             payload: columns(&model.selection.payload),
             kept: model.selection.kept_actuators.clone(),
             frames: Frames::of(&model.mechanism),
+            tolerance_of_derivatives: TOLERANCE,
             mechanism,
         }
     }
@@ -280,7 +284,9 @@ impl Truth<'_> {
         if let Some(matrix) = own {
             return Ok(matrix);
         }
-        if let Some(matrix) = derivatives::output(&side.dynamics, function, self.sample)? {
+        let tolerance = self.expected.tolerance_of_derivatives;
+        let own = derivatives::output(&side.dynamics, function, self.sample, tolerance)?;
+        if let Some(matrix) = own {
             return Ok(matrix);
         }
         match kinematic(&side.dynamics, function, self.sample)? {

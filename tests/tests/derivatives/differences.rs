@@ -70,7 +70,7 @@ fn differ(robot: &Robot) -> Result<(), Failure> {
             };
             let own = |state: &State| Ok(value(of, state, &sample)?.column(0).into_owned());
             // Next to a change of sign there are no differences.
-            let Ok(wanted) = differences(mechanism.dof(), &moved, &own) else {
+            let Ok(wanted) = differences(mechanism.dof(), &moved, &own, TOLERANCE) else {
                 continue;
             };
             let found = value(function, state, &sample)?;
