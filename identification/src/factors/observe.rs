@@ -25,7 +25,7 @@ use crate::{
     result::RunSummary,
     settings::{Instruments, Normalisation, Settings},
 };
-use overact_logs::{Error, Load, Log};
+use overact_logs::{Error, Log};
 
 /// Metadata of runs.
 #[derive(Debug, Clone, Default)]
@@ -218,7 +218,7 @@ impl Columns {
     ) -> Result<Self, Error> {
         let seed = settings.seed;
         let new = |payload| ColumnSet::new(model, payload, settings.asymmetric_friction, seed);
-        let names = names_of_loads(load.flatten().map(Load::Named).into_iter());
+        let names = names_of_loads(load.flatten().map(overact_logs::Load::Named).into_iter());
         let all = new(load.is_some())?.with_payloads(&names);
         let mut chosen = match load {
             Some(_) => base_parameters(model, &all, PayloadUse::Separate, seed)?.columns,

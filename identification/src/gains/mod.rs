@@ -37,7 +37,7 @@ use crate::settings::Settings;
 use deviations::deviations;
 use known::Split;
 use known_values::{RedundantValue, contradiction, redundant_values};
-use observation::Observer;
+use observation::{Equations, Observer};
 use overact_logs::{Error, Log, Problem, significant};
 use selection::{Selection, undetermined};
 use solve::{solve, total_least_squares};
