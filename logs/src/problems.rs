@@ -208,6 +208,8 @@ pub(crate) fn missing_columns(
         ))
     } else if let Some(guesses) = guesses(missing, names, used) {
         problem.help(guesses)
+    } else if are_default(names) {
+        problem.help("the file has the columns of a log without [data], as `overact simulate` writes it: name these columns in [data], without `position_scale` and `torque_gain`, or leave out the table")
     } else if names.is_empty() && *columns > 0 {
         problem.help(
             "name the columns in the table [data] by their numbers: `$1` is the first one, `$2` the next",
@@ -215,6 +217,12 @@ pub(crate) fn missing_columns(
     } else {
         problem.help("name the columns in the table [data]")
     }
+}
+
+/// Whether columns have the names of a log without a table `[data]`.
+fn are_default(names: &[&str]) -> bool {
+    let begins = |start: &str| names.iter().any(|name| name.starts_with(start));
+    names.contains(&"time") && begins("q_") && begins("tau_")
 }
 
 /// The problem of missing columns, with the text `existing`.

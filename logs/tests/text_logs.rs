@@ -152,6 +152,17 @@ fn ambiguous_decimal_commas_are_rejected() {
 }
 
 #[test]
+fn a_simulated_log_next_to_other_columns_in_data_is_explained() {
+    let other = Mapping {
+        positions: vec![String::from("encoder")],
+        torques: vec![String::from("current")],
+        ..named()
+    };
+    let error = refused(b"time,q_1,tau_1\n0,0,0\n0.1,0,0\n", &other);
+    assert!(error.contains("as `overact simulate` writes it"), "{error}");
+}
+
+#[test]
 fn missing_columns_of_unnamed_files_are_reported() {
     assert_eq!(
         refused(b"0 0 0\n0.1 0 0\n", &named()),
