@@ -12,10 +12,6 @@ use super::{
     solve::solve,
 };
 use crate::{
-    assessment::{
-        check::{About, Check, CheckKind, Grade},
-        checks::level::{level, origin},
-    },
     estimation::intervals::distributions::student_quantile,
     regression::{
         elimination::eliminate,
@@ -23,47 +19,42 @@ use crate::{
     },
 };
 
-/// Largest harmless difference from a known value, relative to it.
-const HARMLESS: f64 = 0.02;
+/// Fraction of true values that are called a contradiction in place of undetermined gains.
+const LEVEL: f64 = 1e-6;
 
 /// What to do about known values that contradict each other.
-const REMEDY: &str = "Weigh the bodies again, check which runs carry which payload, or leave out the value that is in doubt";
+pub(crate) const REMEDY: &str = "Weigh the bodies again, check which runs carry which payload, or leave out the value that is in doubt";
 
 /// A known value that the others determine, too.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RedundantValue {
     /// Name of the parameter.
-    name: String,
+    pub(crate) name: String,
     /// Its SI unit.
-    unit: String,
+    pub(crate) unit: String,
     /// Known value.
-    known: f64,
+    pub(crate) known: f64,
     /// Estimate from the other known values.
-    estimated: f64,
+    pub(crate) estimated: f64,
     /// Standard deviation of the estimate.
-    deviation: f64,
+    pub(crate) deviation: f64,
     /// Degrees of freedom of the standard deviation.
-    freedom: f64,
+    pub(crate) freedom: f64,
 }
 
 impl RedundantValue {
     /// Difference from the known value, in standard deviations.
-    fn miss(&self) -> f64 {
+    pub(crate) fn miss(&self) -> f64 {
         (self.estimated - self.known).abs() / self.deviation
     }
 
-    /// Largest such difference of a true value, for this number of tests.
-    fn limit(&self, tests: usize) -> f64 {
-        student_quantile(level(tests), self.freedom)
-    }
-
-    /// Whether the difference is relevant.
-    fn is_large(&self) -> bool {
-        (self.estimated - self.known).abs() > HARMLESS * self.known.abs()
+    /// Difference in standard deviations that a true value exceeds with this probability.
+    pub(crate) fn limit(&self, probability: f64) -> f64 {
+        student_quantile(probability, self.freedom)
     }
 
     /// The known value and the estimate.
-    fn words(&self) -> String {
+    pub(crate) fn words(&self) -> String {
         let Self { name, unit, .. } = self;
         let [known, estimated, deviation] =
             [self.known, self.estimated, self.deviation].map(|value| significant(value, 3));
@@ -73,17 +64,16 @@ impl RedundantValue {
     }
 }
 
-/// Values that contradict the others, the largest difference first.
-fn contradictions(values: &[RedundantValue]) -> Vec<&RedundantValue> {
-    let tests = values.len();
+/// Values that contradict the others at a level, the largest difference first.
+pub(crate) fn contradictions(values: &[RedundantValue], level: f64) -> Vec<&RedundantValue> {
     let mut all: Vec<&RedundantValue> = values.iter().collect();
-    all.retain(|one| one.miss() > one.limit(tests));
+    all.retain(|one| one.miss() > one.limit(level));
     all.sort_by(|a, b| b.miss().total_cmp(&a.miss()));
     all
 }
 
 /// Why known values contradict each other.
-fn words(contradictions: &[&RedundantValue]) -> String {
+pub(crate) fn words(contradictions: &[&RedundantValue]) -> String {
     let each: Vec<String> = contradictions.iter().map(|one| one.words()).collect();
     format!(
         "the known values contradict each other: {}",
@@ -93,31 +83,10 @@ fn words(contradictions: &[&RedundantValue]) -> String {
 
 /// The error of contradicting values that no gains can explain; `None` if they agree.
 pub(super) fn contradiction(values: &[RedundantValue]) -> Option<Error> {
-    let found = contradictions(values);
+    let found = contradictions(values, LEVEL);
     let message = || format!("gains are not determined: {}", words(&found));
     let problem = || Problem::new(Code::GAINS, message()).help(format!("{REMEDY}."));
     (!found.is_empty()).then(|| problem().into())
-}
-
-/// Check that the known values agree; `None` if none is redundant.
-pub(crate) fn check(values: &[RedundantValue]) -> Option<Check> {
-    let worst = { values.iter() }.max_by(|a, b| a.miss().total_cmp(&b.miss()))?;
-    let found = contradictions(values);
-    let check = if found.is_empty() {
-        let passed = format!("the known values agree with each other: {}", worst.words());
-        Check::new(CheckKind::KnownValues, About::Model, passed)
-    } else {
-        let failed = format!("{}. {REMEDY}", words(&found));
-        let check = Check::new(CheckKind::KnownValues, About::Model, failed).found();
-        if found.iter().any(|one| one.is_large()) {
-            check.with_grade(Grade::DoNotUse)
-        } else {
-            check
-        }
-    };
-    let tests = values.len();
-    let limit = worst.limit(tests);
-    Some({ check.measured(worst.miss(), "standard deviations") }.against(limit, origin(tests)))
 }
 
 /// Each known value that the others determine, with its estimate from them.

@@ -3,8 +3,8 @@
 use nalgebra::DMatrix;
 use serde::Serialize;
 
-use super::known_values::{self, RedundantValue};
-use crate::{assessment::check::Check, regression::torque_uncertainty::TorqueCorrection};
+use super::known_values::RedundantValue;
+use crate::regression::torque_uncertainty::TorqueCorrection;
 
 /// Smallest significant difference from the description, in standard deviations.
 const DEVIATIONS: f64 = 3.0;
@@ -63,18 +63,13 @@ pub struct Gains {
     pub equations: usize,
     /// Known values that the others determine, too.
     #[serde(skip)]
-    pub(super) redundant: Vec<RedundantValue>,
+    pub(crate) redundant: Vec<RedundantValue>,
     /// Covariance of the gains, one row for each actuator.
     #[serde(skip)]
     pub(super) covariance: DMatrix<f64>,
 }
 
 impl Gains {
-    /// Check that several known values agree; `None` if there is only one.
-    pub(crate) fn check(&self) -> Option<Check> {
-        known_values::check(&self.redundant)
-    }
-
     /// Effect of the relative errors δg/g on torques that have been multiplied by the gains.
     pub(crate) fn correction(&self) -> TorqueCorrection<'_> {
         TorqueCorrection {

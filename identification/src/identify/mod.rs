@@ -185,7 +185,11 @@ pub fn identify_after(
     stage("position noise");
     let column_noise = prepared.column_noise(model, dataset.runs, settings)?;
     let ranges = prepared.ranges(model);
-    let mut checks = assessment::checks(
+    let redundant_values = match before {
+        PriorStage::Gains(gains) => gains.redundant.as_slice(),
+        _ => &[],
+    };
+    let checks = assessment::checks(
         &Context {
             model,
             dataset,
@@ -201,13 +205,11 @@ pub fn identify_after(
             cross_validation: &cross_validation,
             errors_in_regressor: &errors_in_regressor,
             column_noise: &column_noise,
+            redundant_values,
             ranges: &ranges,
         },
         &|name| progress(Progress::Check { name }),
     )?;
-    if let PriorStage::Gains(gains) = before {
-        checks.splice(0..0, gains.check());
-    }
     stage("plots");
     let failed = checks.iter().filter(|check| !check.passed);
     warnings.extend(failed.map(Check::located));

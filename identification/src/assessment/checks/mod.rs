@@ -26,6 +26,7 @@ use crate::{
     estimation::{
         base::BaseParameters, column_noise::ColumnNoise, instruments::regressor::ErrorsInRegressor,
     },
+    gains::known_values::RedundantValue,
     regression::{columns::ColumnSet, projection::ModelKind, system::System},
     result::{CrossValidation, Estimate, Estimator, Stage},
     settings::Settings,
@@ -58,6 +59,8 @@ pub(crate) struct Context<'a> {
     pub(crate) errors_in_regressor: &'a [ErrorsInRegressor],
     /// For each projection, the effect of position noise on its columns.
     pub(crate) column_noise: &'a [Option<ColumnNoise>],
+    /// Known values that others determine, too, if the gains were identified.
+    pub(crate) redundant_values: &'a [RedundantValue],
     /// Pose coordinates with their ranges in the training runs (m, rad).
     pub(crate) ranges: &'a [(String, f64)],
 }
@@ -117,7 +120,7 @@ impl<'a> Context<'a> {
 type Function = fn(&Context<'_>) -> Result<Vec<Check>, Error>;
 
 /// All checks with what they examine, in the order of the report.
-const CHECKS: [(&str, Function); 24] = [
+const CHECKS: [(&str, Function); 25] = [
     ("raw samples", samples::raw_samples::check),
     ("cables", samples::cables::check),
     ("units", units::check),
@@ -133,6 +136,7 @@ const CHECKS: [(&str, Function); 24] = [
     ("clock", samples::clock::check),
     ("gains", torques::gains::check),
     ("geometry", kinematics::geometry::check),
+    ("known values", parameters::known_values::check),
     ("payload labels", parameters::payload_labels::check),
     ("missing parameters", parameters::missing_parameters::check),
     (
