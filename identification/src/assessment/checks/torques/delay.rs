@@ -4,10 +4,10 @@ use crate::assessment::{
     check::{About, Check, CheckKind, Detectable},
     checks::{
         Context,
-        fault_hypotheses::{TestedHypothesis, parabola, tested, worst_harm},
+        fault_hypotheses::{self, TestedHypothesis, only, parabola, tested, worst_harm},
         level::{level, origin},
     },
-    hypotheses::{FaultHypothesis, Group},
+    hypotheses::{FaultHypothesis, Group, Scores},
 };
 use overact_logs::{Error, significant};
 
@@ -74,7 +74,10 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         return Ok(vec![Check { words, ..check }]);
     }
     let name = drive(shown);
-    let harm = worst_harm(context, scores, &found, shown, level);
+    let mut harm = worst_harm(context, scores, &found, shown, level);
+    if let (None, Some(second)) = (name, second_order(scores, wald.size())) {
+        harm.with(context, &fault_hypotheses::harm(context, scores, &second));
+    }
     let whose = name.map_or_else(
         || String::from("the torques are"),
         |name| format!("only the torque of `{name}` is"),
@@ -103,6 +106,18 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         Some(name) => check.of_actuator(name),
         None => check,
     }])
+}
+
+/// Second term of the delayed torques τ(t - δ) = τ - δ τ' + ½ δ² τ'' - …: that of a filter with s =
+/// ½ δ².
+///
+/// It shifts parameters such as dry friction, whose shift by the first term is small.
+fn second_order(scores: &Scores, delay: f64) -> Option<TestedHypothesis> {
+    let filter = only(scores, FaultHypothesis::SmoothingWithFriction)?;
+    Some(TestedHypothesis {
+        size: Some(0.5 * delay * delay),
+        ..filter
+    })
 }
 
 /// Advice on shifting the torque columns against a delay in ms.
