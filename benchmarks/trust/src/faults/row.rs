@@ -10,13 +10,24 @@ const HALF_WIDTH: f64 = 1.96;
 /// Errors beyond this number of standard deviations are counted.
 const LARGE: f64 = 3.5;
 
+/// Error of a usable parameter.
+#[derive(Debug, Clone)]
+struct UsableError {
+    /// Name of the parameter.
+    name: String,
+    /// Its error, with its sign, in standard deviations.
+    error: f64,
+    /// Whether the report names it among the parameters that an undetected fault would shift.
+    is_named: bool,
+}
+
 /// Identification of one draw.
 #[derive(Debug, Clone)]
 pub(super) struct Draw {
     /// Grade; `None` if the data are refused with an error.
     grade: Option<Grade>,
-    /// Errors of the usable parameters, with their signs, in standard deviations.
-    errors: Vec<(String, f64)>,
+    /// Errors of the usable parameters.
+    errors: Vec<UsableError>,
     /// Names of the failed checks.
     checks: Vec<&'static str>,
 }
@@ -53,14 +64,16 @@ impl Draw {
                 && matches!(one.stage, Stage::Base | Stage::Recommended)
         });
         let parameters = stages.flat_map(|one| &one.parameters);
+        let limits = result.unseen.concat();
         let errors = parameters
             .filter(|one| usable(&one.name))
             .filter_map(|one| {
                 let half = 0.5 * (one.interval_95[1] - one.interval_95[0]);
-                Some((
-                    one.name.clone(),
-                    (one.value - one.true_value?) * HALF_WIDTH / half,
-                ))
+                Some(UsableError {
+                    name: one.name.clone(),
+                    error: (one.value - one.true_value?) * HALF_WIDTH / half,
+                    is_named: limits.contains(&format!("`{}`", one.name)),
+                })
             });
         Self {
             grade: Some(verdict.grade),
@@ -94,6 +107,8 @@ pub struct FaultRow {
     /// These are at least half of the draws with usable parameters: noise decides whether a small
     /// parameter is recommended, so that its mean over few draws is that of a selection.
     pub mean: Option<(f64, String)>,
+    /// The same of parameters that the report does not name next to a detection limit.
+    pub unnamed_mean: Option<(f64, String)>,
     /// Fraction of the values of usable parameters beyond 3.5 standard deviations, in percent.
     pub beyond_percent: f64,
     /// Failed checks, with the number of draws.
@@ -104,10 +119,8 @@ impl FaultRow {
     /// Sums over draws.
     pub(super) fn new(robot: &str, fault: &str, draws: &[Draw]) -> Self {
         let count = |grade| draws.iter().filter(|one| one.grade == grade).count();
-        let mut errors: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
-        for (name, error) in draws.iter().flat_map(|one| &one.errors) {
-            errors.entry(name).or_default().push(*error);
-        }
+        let errors = by_name(draws, |_| true);
+        let unnamed = by_name(draws, |one| !one.is_named);
         let mut checks: BTreeMap<&'static str, usize> = BTreeMap::new();
         for one in draws {
             let mut own = one.checks.clone();
@@ -116,18 +129,13 @@ impl FaultRow {
             own.into_iter()
                 .for_each(|name| *checks.entry(name).or_default() += 1);
         }
-        let worst = |least: usize, of: &dyn Fn(&[f64]) -> f64| {
-            let all = errors.iter().filter(|(_, own)| own.len() >= least);
-            let all = all.map(|(name, own)| (of(own), (*name).to_owned()));
-            all.max_by(|a, b| a.0.total_cmp(&b.0))
-        };
         let values: Vec<f64> = errors.values().flatten().copied().collect();
         let beyond = values.iter().filter(|error| error.abs() > LARGE).count();
         let [listed, used] = [Grade::UseListed, Grade::Use].map(|grade| count(Some(grade)));
         // Each parameter has a value in both stages.
-        let mean = worst(listed + used, &|own| {
-            own.iter().sum::<f64>().abs() / own.len() as f64
-        });
+        let least = listed + used;
+        let mean = |own: &[f64]| own.iter().sum::<f64>().abs() / own.len() as f64;
+        let largest = |own: &[f64]| own.iter().fold(0.0, |most: f64, one| most.max(one.abs()));
         Self {
             robot: robot.to_owned(),
             fault: fault.to_owned(),
@@ -136,20 +144,41 @@ impl FaultRow {
             listed,
             used,
             parameters: values.len() as f64 / (listed + used).max(1) as f64,
-            largest: worst(1, &|own| {
-                own.iter().fold(0.0, |most: f64, one| most.max(one.abs()))
-            }),
-            mean,
+            largest: worst(&errors, 1, &largest),
+            mean: worst(&errors, least, &mean),
+            unnamed_mean: worst(&unnamed, least, &mean),
             beyond_percent: 100.0 * beyond as f64 / values.len().max(1) as f64,
             checks,
         }
     }
 }
 
+/// Errors of some usable parameters in all draws, by name.
+fn by_name(draws: &[Draw], is_wanted: impl Fn(&UsableError) -> bool) -> BTreeMap<&str, Vec<f64>> {
+    let mut errors: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    for one in draws.iter().flat_map(|one| &one.errors) {
+        if is_wanted(one) {
+            errors.entry(&one.name).or_default().push(one.error);
+        }
+    }
+    errors
+}
+
+/// Largest value of a parameter with at least so many errors, and its name.
+fn worst(
+    errors: &BTreeMap<&str, Vec<f64>>,
+    least: usize,
+    of: &dyn Fn(&[f64]) -> f64,
+) -> Option<(f64, String)> {
+    let all = errors.iter().filter(|(_, own)| own.len() >= least);
+    let all = all.map(|(name, own)| (of(own), (*name).to_owned()));
+    all.max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
 /// Header of the table.
 #[must_use]
 pub fn header() -> &'static str {
-    "| robot | fault | refused | do not use | listed | use | usable values | largest error, σ | largest mean error, σ | beyond 3.5 σ, % | failed checks |\n|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---|"
+    "| robot | fault | refused | do not use | listed | use | usable values | largest error, σ | largest mean error, σ | of those not named by a limit, σ | beyond 3.5 σ, % | failed checks |\n|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|"
 }
 
 impl fmt::Display for FaultRow {
@@ -166,7 +195,7 @@ impl fmt::Display for FaultRow {
             .collect();
         write!(
             f,
-            "| {} | {} | {} | {} | {} | {} | {:.0} | {} | {} | {:.1} | {} |",
+            "| {} | {} | {} | {} | {} | {} | {:.0} | {} | {} | {} | {:.1} | {} |",
             self.robot,
             self.fault,
             self.refused,
@@ -176,6 +205,7 @@ impl fmt::Display for FaultRow {
             self.parameters,
             error(&self.largest),
             error(&self.mean),
+            error(&self.unnamed_mean),
             self.beyond_percent,
             checks.join(", ")
         )
