@@ -349,12 +349,8 @@ pub(crate) fn payload_names(runs: &[Log]) -> Vec<String> {
 
 /// Names of the payloads of loads, in their order; empty without names.
 pub fn names_of_loads<'a>(loads: impl Iterator<Item = Load<'a>>) -> Vec<String> {
-    let label = |load| match load {
-        Load::Named(label) => Some(label),
-        Load::Nothing | Load::Any => None,
-    };
     let mut names: Vec<String> = Vec::new();
-    for name in loads.filter_map(label).flat_map(carried_payloads) {
+    for name in loads.filter_map(Load::name).flat_map(carried_payloads) {
         if !names.iter().any(|one| one == name) {
             names.push(name.to_owned());
         }

@@ -48,8 +48,7 @@ impl Motion {
     /// The payload that the platform carried.
     #[must_use]
     pub fn carried(&self) -> Load<'_> {
-        let own = self.payload_name.as_deref().map(Load::Named);
-        own.unwrap_or(Load::from(self.payload))
+        Load::new(self.payload, self.payload_name.as_deref())
     }
 
     /// Time of a sample of the motion, s from the start of the log.

@@ -54,10 +54,7 @@ impl CrossValidation {
         Self {
             run: validation.run,
             payload: carried.is_some(),
-            payload_name: match carried {
-                Load::Named(label) => Some(label.to_owned()),
-                Load::Nothing | Load::Any => None,
-            },
+            payload_name: carried.name().map(str::to_owned),
             model,
             stage,
             residual_norm: validation.residual_norm,

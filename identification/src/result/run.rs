@@ -42,8 +42,7 @@ impl RunSummary {
     /// Payload of the run.
     #[must_use]
     pub fn carried(&self) -> Load<'_> {
-        let own = self.payload_name.as_deref().map(Load::Named);
-        own.unwrap_or(Load::from(self.payload))
+        Load::new(self.payload, self.payload_name.as_deref())
     }
 
     /// Summary of a run.

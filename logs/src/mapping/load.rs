@@ -22,6 +22,21 @@ pub fn carried_payloads(label: &str) -> impl Iterator<Item = &str> {
 }
 
 impl<'a> Load<'a> {
+    /// The payload of a run that carries one or not, with its name if payloads have names.
+    #[must_use]
+    pub fn new(loaded: bool, name: Option<&'a str>) -> Self {
+        name.map_or_else(|| Self::from(loaded), Self::Named)
+    }
+
+    /// The name of the payload, if it has one.
+    #[must_use]
+    pub const fn name(self) -> Option<&'a str> {
+        match self {
+            Self::Named(label) => Some(label),
+            Self::Nothing | Self::Any => None,
+        }
+    }
+
     /// The payload for tables: `no`, `yes`, or its names.
     #[must_use]
     pub const fn words(self) -> &'a str {

@@ -35,8 +35,7 @@ pub(super) struct FourierRun {
 impl FourierRun {
     /// Payload of the run.
     pub(super) fn carried(&self) -> Load<'_> {
-        let own = self.payload_name.as_deref().map(Load::Named);
-        own.unwrap_or(Load::from(self.payload))
+        Load::new(self.payload, self.payload_name.as_deref())
     }
 }
 
@@ -120,10 +119,7 @@ pub(super) fn wanted(
                 .unwrap_or(BANDWIDTH_SHARE * bandwidth / harmonics as f64),
             harmonics,
             payload: own.is_some(),
-            payload_name: match own {
-                Load::Named(label) => Some(label.to_owned()),
-                Load::Nothing | Load::Any => None,
-            },
+            payload_name: own.name().map(str::to_owned),
             own_duration: like.and_then(|frame| frame.own_duration),
             duration: like.map_or(duration, |frame| frame.duration),
         }

@@ -327,8 +327,7 @@ impl Log {
     /// The payload that the platform carried.
     #[must_use]
     pub fn carried(&self) -> Load<'_> {
-        let own = self.payload_name().map(Load::Named);
-        own.unwrap_or(Load::from(self.payload))
+        Load::new(self.payload, self.payload_name())
     }
 
     /// The same run with a payload of this name; different names are different bodies.
