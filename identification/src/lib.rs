@@ -78,7 +78,7 @@ mod validation;
 mod with_avx;
 
 pub use assessment::{
-    check::{About, Check, CheckKind, Detectable, Grade},
+    check::{About, Check, CheckKind, Detectable, DetectableShift, Grade},
     evidence::{Axis, Curve, Evidence},
     verdict::{FailedChecks, StageVerdict, Verdict, failed_checks},
 };

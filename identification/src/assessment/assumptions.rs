@@ -278,8 +278,18 @@ fn limit(one: &Detectable) -> String {
         ),
         unit => format!("{} {unit}", significant(one.size, 2)),
     };
+    let others: Vec<String> = one
+        .others
+        .iter()
+        .map(|other| format!("`{}`", other.parameter))
+        .collect();
+    let also = if others.is_empty() {
+        String::new()
+    } else {
+        format!("; also {}", others.join(", "))
+    };
     format!(
-        "{size}{of} (`{}` by {shift_deviations:.0} σ)",
+        "{size}{of} (`{}` by {shift_deviations:.0} σ{also})",
         one.parameter
     )
 }
@@ -288,7 +298,7 @@ fn limit(one: &Detectable) -> String {
 mod tests {
     use super::{HARMFUL, unseen};
     use crate::assessment::{
-        check::{About, Check, CheckKind, Detectable},
+        check::{About, Check, CheckKind, Detectable, DetectableShift},
         hypotheses::{FaultHypothesis, Shape},
     };
 
@@ -307,6 +317,7 @@ mod tests {
             size: size.0,
             parameter: String::from("zz_1"),
             shift_deviations,
+            others: Vec::new(),
         }
     }
 
@@ -345,6 +356,24 @@ mod tests {
             "torque or force that the model lacks: 0.3 N m/rad at `left` with the position, as a spring (`zz_1` by 4 σ)",
         ];
         assert_eq!(unseen(&[check(CheckKind::Delay, all)]), expected);
+    }
+
+    #[test]
+    fn all_parameters_that_an_undetected_fault_shifts_are_named() {
+        let others = ["mx_2", "fs_1"].map(|name| DetectableShift {
+            parameter: name.to_owned(),
+            deviations: 4.0,
+        });
+        let gear = Detectable {
+            others: others.into(),
+            ..limit(FaultHypothesis::Gear(0), "left", (0.02, ""), 7.6)
+        };
+        assert_eq!(
+            unseen(&[check(CheckKind::EncoderOffset, vec![gear])]),
+            [
+                "ratio of a gear, with positions and torques of its drive: 2 % of `left` (`zz_1` by 8 σ; also `mx_2`, `fs_1`)"
+            ]
+        );
     }
 
     #[test]

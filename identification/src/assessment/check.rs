@@ -80,9 +80,28 @@ pub struct Detectable {
     /// Shift of that parameter by an undetected fault, in standard deviations.
     #[serde(rename = "moves")]
     pub shift_deviations: f64,
+    /// All other parameters that the fault shifts by more than three standard deviations.
+    #[serde(rename = "also", skip_serializing_if = "Vec::is_empty")]
+    pub others: Vec<DetectableShift>,
+}
+
+/// Shift of a parameter by a fault of the size that is just detectable.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DetectableShift {
+    /// Name of the parameter.
+    pub parameter: String,
+    /// Shift in standard deviations of the parameter.
+    #[serde(rename = "moves")]
+    pub deviations: f64,
 }
 
 impl Detectable {
+    /// All parameters that the fault shifts by more than three standard deviations.
+    pub(crate) fn parameters(&self) -> impl Iterator<Item = &str> {
+        let others = self.others.iter().map(|other| other.parameter.as_str());
+        std::iter::once(self.parameter.as_str()).chain(others)
+    }
+
     /// A wrong gain of the actuator with this number and `name`, which these data cannot detect at
     /// any size.
     pub(crate) fn undetectable_gain(actuator: usize, name: &str) -> Self {
@@ -94,6 +113,7 @@ impl Detectable {
             size: f64::INFINITY,
             parameter: String::new(),
             shift_deviations: f64::INFINITY,
+            others: Vec::new(),
         }
     }
 }

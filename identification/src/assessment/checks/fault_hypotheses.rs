@@ -3,7 +3,7 @@
 use super::Context;
 use crate::{
     assessment::{
-        check::{Check, Detectable, Grade},
+        check::{Check, Detectable, DetectableShift, Grade},
         evidence::{Axis, Curve, Evidence},
         hypotheses::{FaultHypothesis, Group, Scores, WaldTest},
     },
@@ -75,21 +75,75 @@ impl TestedHypothesis {
         size: f64,
         shifts: &[ParameterShift],
     ) -> Detectable {
-        let most = shifts.iter().find(|shift| shift.deviations.is_finite());
+        let own = self.size.unwrap_or_else(|| self.wald.size());
+        let factor = size / own.abs().max(f64::MIN_POSITIVE);
+        let at_limit = shifts.iter().map(|shift| ParameterShift {
+            deviations: shift.deviations * factor,
+            ..*shift
+        });
+        self.limit_of(context, scores, unit, size, at_limit)
+    }
+
+    /// Detection limit in the worst combination of several columns.
+    ///
+    /// `amplitude` is the size of a combination, which has the sizes of some columns by place.
+    pub(super) fn detectable_in_worst(
+        &self,
+        context: &Context<'_>,
+        scores: &Scores,
+        unit: &'static str,
+        level: f64,
+        amplitude: impl Fn(&[(usize, f64)]) -> f64,
+    ) -> Option<Detectable> {
+        let base = context.estimates_of(Stage::Base).next()?;
+        let worst = self.wald.worst_sizes(level);
+        let mut shifts: Vec<(ParameterShift, f64)> = worst
+            .iter()
+            .map(|one| {
+                let shift = ParameterShift::new(base, one.parameter, self.band_factor * one.shift);
+                (shift, amplitude(&one.sizes))
+            })
+            .filter(|(shift, _)| shift.deviations.is_finite())
+            .collect();
+        shifts.sort_by(|(a, _), (b, _)| b.deviations.total_cmp(&a.deviations));
+        let size = shifts.first()?.1;
+        let shifts = shifts.into_iter().map(|(shift, _)| shift);
+        Some(self.limit_of(context, scores, unit, size, shifts))
+    }
+
+    /// Detection limit from the parameter shifts by a fault of this size, largest first.
+    fn limit_of(
+        &self,
+        context: &Context<'_>,
+        scores: &Scores,
+        unit: &'static str,
+        size: f64,
+        shifts: impl Iterator<Item = ParameterShift>,
+    ) -> Detectable {
         let base = context.estimates_of(Stage::Base).next();
+        let mut all: Vec<DetectableShift> = Vec::new();
+        for shift in shifts.filter(|shift| shift.deviations.is_finite()) {
+            let parameter = base.map_or_else(String::new, |base| name(base, shift.column));
+            // Of two stages, the larger shift of a parameter comes first.
+            let is_new = all.iter().all(|one| one.parameter != parameter);
+            if all.is_empty() || is_new && shift.deviations > HARMFUL {
+                all.push(DetectableShift {
+                    parameter,
+                    deviations: shift.deviations,
+                });
+            }
+        }
+        let others = all.split_off(all.len().min(1));
+        let most = all.pop();
         Detectable {
             name: String::new(),
             unit,
             fault: self.hypothesis(scores),
             deviation: self.wald.deviation,
             size,
-            parameter: base
-                .zip(most)
-                .map_or_else(String::new, |(base, shift)| name(base, shift.column)),
-            shift_deviations: most.map_or(0.0, |shift| {
-                let own = self.size.unwrap_or_else(|| self.wald.size());
-                shift.deviations * size / own.abs().max(f64::MIN_POSITIVE)
-            }),
+            shift_deviations: most.as_ref().map_or(0.0, |most| most.deviations),
+            parameter: most.map_or_else(String::new, |most| most.parameter),
+            others,
         }
     }
 
@@ -113,25 +167,32 @@ impl TestedHypothesis {
     /// Shifts of the parameters of an estimate, from the test with its columns.
     fn shifts_of(&self, estimate: &Estimate, wald: &WaldTest) -> Vec<ParameterShift> {
         let factor = self.band_factor * self.size.map_or(1.0, |size| size / wald.size());
-        let deviation = |column: usize| {
-            let own = estimate.parameters.iter().find(|one| one.column == column);
-            let half = own.map(|one| 0.5 * (one.interval_95[1] - one.interval_95[0]));
-            half.map_or(f64::INFINITY, |half| half / NORMAL_95)
-        };
-        let shift = |&(column, by): &(usize, f64)| ParameterShift {
-            column,
-            deviations: (by * factor).abs() / deviation(column),
-        };
+        let shift =
+            |&(column, by): &(usize, f64)| ParameterShift::new(estimate, column, by * factor);
         wald.shifts.iter().map(shift).collect()
     }
 }
 
 /// Absolute shift of a parameter by a fault.
+#[derive(Debug, Clone, Copy)]
 struct ParameterShift {
     /// Column of the parameter.
     column: usize,
     /// Shift in standard deviations of the parameter.
     deviations: f64,
+}
+
+impl ParameterShift {
+    /// The shift of the parameter with this `column` in an estimate, in the unit of the parameter.
+    fn new(estimate: &Estimate, column: usize, shift: f64) -> Self {
+        let own = estimate.parameters.iter().find(|one| one.column == column);
+        let half = own.map(|one| 0.5 * (one.interval_95[1] - one.interval_95[0]));
+        let deviation = half.map_or(f64::INFINITY, |half| half / NORMAL_95);
+        Self {
+            column,
+            deviations: shift.abs() / deviation,
+        }
+    }
 }
 
 /// Effect of a fault on the parameters.

@@ -72,5 +72,5 @@ pub(crate) use group::Group;
 pub(crate) use misreading::Misreading;
 pub(crate) use pace::{Pace, is_quasi_static};
 pub(crate) use scores::{ScoreTest, Scores};
-pub(crate) use shapes::{PositionRange, Shape};
+pub(crate) use shapes::{PositionRange, Shape, wave_amplitude};
 pub(crate) use wald_test::WaldTest;

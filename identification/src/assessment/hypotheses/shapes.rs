@@ -116,6 +116,25 @@ impl PositionRange {
     }
 }
 
+/// Largest magnitude of a sum of waves over the range of the position.
+///
+/// `sizes` are the sizes of some waves by place.
+pub(crate) fn wave_amplitude(sizes: &[(usize, f64)]) -> f64 {
+    // The shortest period has eight of these positions.
+    const POSITIONS: usize = 4 * WAVES;
+    let range = PositionRange {
+        low: 0.0,
+        high: 1.0,
+        speed: 0.0,
+    };
+    let sum = |position: usize| {
+        let waves = range.waves(position as f64 / POSITIONS as f64);
+        let parts = sizes.iter().map(|(place, size)| size * waves[*place]);
+        parts.sum::<f64>().abs()
+    };
+    (0..=POSITIONS).map(sum).fold(0.0, f64::max)
+}
+
 impl Shape {
     /// Keys of a joint with which the model has such a torque; empty if there are none.
     pub(crate) const fn keys(self) -> &'static str {

@@ -93,7 +93,7 @@ impl Scores {
         self.wald_test(
             &orthogonal,
             &contributions,
-            &off.select_columns(&independent),
+            off.select_columns(&independent),
         )
     }
 
@@ -102,7 +102,7 @@ impl Scores {
         &self,
         orthogonal: &OrthogonalColumns<'_>,
         contributions: &[RunContribution],
-        off: &DMatrix<f64>,
+        off: DMatrix<f64>,
     ) -> Option<WaldTest> {
         let width = orthogonal.independent.len();
         let score = score(contributions, width);
@@ -121,7 +121,7 @@ impl Scores {
         let sizes = orthogonal.white.tr_mul(&score);
         let of_sizes = orthogonal.white.tr_mul(&(&covariance * orthogonal.white));
         let total: f64 = self.runs.iter().map(|run| run.square).sum();
-        let shifts = off * &sizes;
+        let shifts = &off * &sizes;
         let selected = orthogonal.model_columns.selected.iter().copied();
         Some(WaldTest {
             deviation: of_sizes[(0, 0)].max(0.0).sqrt(),
@@ -137,6 +137,7 @@ impl Scores {
                 .zip(sizes.iter().copied())
                 .collect(),
             shifts: selected.zip(shifts.iter().copied()).collect(),
+            regression: off,
         })
     }
 

@@ -67,6 +67,41 @@ impl Hotelling {
     }
 }
 
+/// Noncentrality with which Hotelling's test at `level` is passed with probability `missed`.
+///
+/// The tail of the noncentral distribution of Fisher is that of a central one (Patnaik 1949):
+/// F'(k, f, λ) ≈ (1 + λ/k) F(h, f) with h = (k + λ)²/(k + 2 λ).
+pub(crate) fn detectable_noncentrality(level: f64, missed: f64, rank: f64, freedom: f64) -> f64 {
+    let rest = (freedom - rank + 1.0).max(1.0);
+    let critical = bisected(|value| fisher_tail(value, rank, rest) > level);
+    bisected(|noncentrality| {
+        let sum = rank + noncentrality;
+        let equivalent = sum * sum / (sum + noncentrality);
+        fisher_tail(critical * rank / sum, equivalent, rest) < 1.0 - missed
+    })
+}
+
+/// Largest positive value with the property `is_below`, which larger values lack.
+fn bisected(is_below: impl Fn(f64) -> bool) -> f64 {
+    let mut high = 1.0;
+    while is_below(high) && high < f64::MAX.sqrt() {
+        high *= 2.0;
+    }
+    let mut low = 0.0;
+    for _ in 0..STEPS {
+        let middle = 0.5 * (low + high);
+        if middle == low || middle == high {
+            break;
+        }
+        *(if is_below(middle) {
+            &mut low
+        } else {
+            &mut high
+        }) = middle;
+    }
+    low
+}
+
 /// Tail probability of Fisher's distribution.
 ///
 /// It is zero for NaN, so that a missing statistic never passes a test.
@@ -140,7 +175,21 @@ fn log_gamma(x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Hotelling, fisher_tail, log_gamma, student_quantile, student_tail};
+    use super::{
+        Hotelling, detectable_noncentrality, fisher_tail, log_gamma, student_quantile, student_tail,
+    };
+
+    #[test]
+    fn detectable_noncentralities_match_published_tables() {
+        // Chi-squared distribution, level 5 %, power 90 % (Haynam and others 1970).
+        for (rank, table) in [(1.0, 10.507), (4.0, 15.405), (16.0, 24.125)] {
+            let found = detectable_noncentrality(0.05, 0.1, rank, f64::INFINITY);
+            assert!((found / table - 1.0).abs() < 0.01, "{rank}: {found}");
+        }
+        // Noncentral distribution of Fisher, by SciPy 1.16.
+        let found = detectable_noncentrality(4e-6, 0.1, 16.0, 100.0);
+        assert!((found / 80.736 - 1.0).abs() < 0.01, "{found}");
+    }
 
     #[test]
     fn undefined_statistics_have_probability_zero() {

@@ -12,7 +12,7 @@ use crate::assessment::{
         level::{level, origin},
     },
     evidence::{Axis, Curve, Evidence},
-    hypotheses::{FaultHypothesis, Group, Scores, Shape},
+    hypotheses::{FaultHypothesis, Group, Scores, Shape, wave_amplitude},
 };
 use overact_logs::{Error, called, significant};
 
@@ -75,8 +75,10 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     }])
 }
 
-/// The most harmful undetectable torque or force in the equations of each drive and coordinate, and
-/// the most harmful potential.
+/// Detection limits of the torques and forces that the model may lack.
+///
+/// Of the equations of each drive and coordinate, and of the potentials, these are the most harmful
+/// one and each further one that shifts parameters which no more harmful one shifts.
 fn detection_limits(
     context: &Context<'_>,
     scores: &Scores,
@@ -84,8 +86,8 @@ fn detection_limits(
     level: f64,
 ) -> Vec<Detectable> {
     let info = context.model.info();
-    let mut worst: Vec<(EquationLine, Detectable)> = Vec::new();
-    for one in found.iter().filter(|one| one.wald.sizes.len() == 1) {
+    let mut harmful: Vec<(EquationLine, Detectable)> = Vec::new();
+    for one in found {
         let hypothesis = one.hypothesis(scores);
         let line = EquationLine::of(hypothesis);
         let (name, is_revolute) = match line {
@@ -97,13 +99,25 @@ fn detection_limits(
             EquationLine::All => (None, true),
         };
         let unit = match (hypothesis, hypothesis.shape()) {
-            (FaultHypothesis::Force(..), _) => continue,
+            // Those of each drive are tested one by one, too, and so are the products of a potential.
+            (
+                FaultHypothesis::Force(..)
+                | FaultHypothesis::AllTorques(_)
+                | FaultHypothesis::AllCrosstalk
+                | FaultHypothesis::Potential(_),
+                _,
+            ) => continue,
             (_, Some(shape)) => shape.unit(is_revolute),
             (FaultHypothesis::PotentialTerm(_), _) => "N m",
             _ => "",
         };
-        let size = one.wald.visible(level);
-        let Some(limit) = one.detectable_in_base(context, scores, unit, size) else {
+        let limit = match hypothesis.shape() {
+            Some(Shape::Waves | Shape::LoadWaves) => {
+                one.detectable_in_worst(context, scores, unit, level, wave_amplitude)
+            }
+            _ => one.detectable_in_base(context, scores, unit, one.wald.visible(level)),
+        };
+        let Some(limit) = limit else {
             continue;
         };
         if limit.shift_deviations <= HARMFUL {
@@ -113,13 +127,23 @@ fn detection_limits(
             name: name.copied().unwrap_or_default().to_owned(),
             ..limit
         };
-        match worst.iter_mut().find(|(own, _)| *own == line) {
-            Some((_, own)) if own.shift_deviations < limit.shift_deviations => *own = limit,
-            Some(_) => {}
-            None => worst.push((line, limit)),
-        }
+        harmful.push((line, limit));
     }
-    worst.into_iter().map(|(_, limit)| limit).collect()
+    harmful.sort_by(|(_, a), (_, b)| b.shift_deviations.total_cmp(&a.shift_deviations));
+    let mut named: Vec<(EquationLine, String)> = Vec::new();
+    harmful.retain(|(line, limit)| {
+        let known = named.len();
+        for parameter in limit.parameters() {
+            if !named
+                .iter()
+                .any(|(own, name)| own == line && name == parameter)
+            {
+                named.push((*line, parameter.to_owned()));
+            }
+        }
+        named.len() > known
+    });
+    harmful.into_iter().map(|(_, limit)| limit).collect()
 }
 
 /// Sentence on the strongest hypothesis, which ends with its consequence.
