@@ -78,7 +78,8 @@ mod validation;
 mod with_avx;
 
 pub use assessment::{
-    check::{About, Check, CheckKind, Detectable, DetectableShift, Grade},
+    check::{About, Check, CheckKind, Grade},
+    detectable::{Detectable, DetectableShift, FaultKind},
     evidence::{Axis, Curve, Evidence},
     verdict::{FailedChecks, StageVerdict, Verdict, failed_checks},
 };

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{evidence::Evidence, hypotheses::FaultHypothesis};
+use super::{detectable::Detectable, evidence::Evidence};
 use crate::{regression::projection::ModelKind, result::Stage};
 use overact_logs::{called, titled};
 
@@ -59,63 +59,6 @@ pub struct Check {
     /// Series that shows the result.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub evidence: Option<Evidence>,
-}
-
-/// Detection limit of one fault, present or not.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Detectable {
-    /// Name of the actuator or length; empty for a fault of the whole robot.
-    pub name: String,
-    /// Unit of the size: `rad`, `m`, `s`, or `s²` for smoothing; empty for a relative size.
-    pub unit: &'static str,
-    /// The fault.
-    #[serde(skip)]
-    pub(crate) fault: FaultHypothesis,
-    /// Standard deviation of the size.
-    pub deviation: f64,
-    /// Size that is detected with 90 % probability; infinite if no size is detectable.
-    pub size: f64,
-    /// Estimated parameter that a fault of this size shifts most.
-    pub parameter: String,
-    /// Shift of that parameter by an undetected fault, in standard deviations.
-    #[serde(rename = "moves")]
-    pub shift_deviations: f64,
-    /// All other parameters that the fault shifts by more than three standard deviations.
-    #[serde(rename = "also", skip_serializing_if = "Vec::is_empty")]
-    pub others: Vec<DetectableShift>,
-}
-
-/// Shift of a parameter by a fault of the size that is just detectable.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DetectableShift {
-    /// Name of the parameter.
-    pub parameter: String,
-    /// Shift in standard deviations of the parameter.
-    #[serde(rename = "moves")]
-    pub deviations: f64,
-}
-
-impl Detectable {
-    /// All parameters that the fault shifts by more than three standard deviations.
-    pub(crate) fn parameters(&self) -> impl Iterator<Item = &str> {
-        let others = self.others.iter().map(|other| other.parameter.as_str());
-        std::iter::once(self.parameter.as_str()).chain(others)
-    }
-
-    /// A wrong gain of the actuator with this number and `name`, which these data cannot detect at
-    /// any size.
-    pub(crate) fn undetectable_gain(actuator: usize, name: &str) -> Self {
-        Self {
-            name: name.to_owned(),
-            unit: "",
-            fault: FaultHypothesis::Gain(actuator),
-            deviation: f64::INFINITY,
-            size: f64::INFINITY,
-            parameter: String::new(),
-            shift_deviations: f64::INFINITY,
-            others: Vec::new(),
-        }
-    }
 }
 
 /// Subject of a check.

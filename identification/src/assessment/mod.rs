@@ -1,6 +1,7 @@
 //! Assessment of an identification: checks, and the verdict that follows from them alone.
 //!
 //! - `check`: result of one check, and the grades;
+//! - `detectable`: detection limit of one fault, `detection_limits`: those of all checks;
 //! - `evidence`: the series that shows it;
 //! - `checks`: all checks, one per file;
 //! - `verdict`: whether the estimates of a model may be used;
@@ -14,6 +15,8 @@
 pub(crate) mod assumptions;
 pub(crate) mod check;
 pub(crate) mod checks;
+pub(crate) mod detectable;
+pub(crate) mod detection_limits;
 pub(crate) mod evidence;
 mod explained;
 pub(crate) mod hypotheses;

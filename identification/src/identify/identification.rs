@@ -18,6 +18,8 @@ use serde::Serialize;
 use crate::{
     assessment::{
         check::{Check, Grade},
+        detectable::Detectable,
+        detection_limits::detection_limits,
         verdict::Verdict,
     },
     calibration::Calibration,
@@ -66,7 +68,9 @@ pub struct Identification {
     pub checks: Vec<Check>,
     /// Assumptions that these data cannot test.
     pub assumptions: Vec<String>,
-    /// Detection limits: for each kind of fault the most harmful undetectable one.
+    /// Detection limits: for each kind of fault the harmful faults that these data would not show.
+    ///
+    /// [`Identification::detection_limits`] has all of them with all parameters that they shift.
     pub unseen: Vec<String>,
     /// Verdicts: whether the estimates may be used, and why, one for each model.
     pub verdicts: Vec<Verdict>,
@@ -138,6 +142,16 @@ impl Identification {
         self.verdicts
             .first()
             .map_or(Grade::DoNotUse, |verdict| verdict.grade)
+    }
+
+    /// Harmful faults that these data would not show, by kind; none for a refused result.
+    #[must_use]
+    pub fn detection_limits(&self) -> Vec<&Detectable> {
+        let refused = |one: &Verdict| one.grade == Grade::DoNotUse;
+        if self.verdicts.iter().all(refused) {
+            return Vec::new();
+        }
+        detection_limits(&self.checks)
     }
 }
 

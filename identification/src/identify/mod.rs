@@ -40,8 +40,9 @@ use prepare::{check_runs, prepared_warnings};
 use crate::{
     assessment::{
         self, Context, RunMonitor,
-        assumptions::{PreviouslyIdentified, assumptions, not_tested, rests_on, unseen},
+        assumptions::{PreviouslyIdentified, assumptions, not_tested, rests_on},
         check::{Check, Grade},
+        detection_limits::{detection_limits, sentences},
         hypotheses::{PositionRange, ScoreTest, fault_hypotheses},
         verdict::verdicts,
     },
@@ -231,7 +232,11 @@ pub fn identify_after(
     let verdicts = verdicts(&estimates, &checks, rests_on.as_deref());
     // Detection limits are irrelevant for a refused result.
     let refused = verdicts.iter().all(|one| one.grade == Grade::DoNotUse);
-    let unseen = if refused { Vec::new() } else { unseen(&checks) };
+    let unseen = if refused {
+        Vec::new()
+    } else {
+        sentences(&detection_limits(&checks))
+    };
     let sessions = RunSummary::sessions(&prepared.runs);
     Ok(Identification {
         robot: info.name.to_owned(),

@@ -12,6 +12,7 @@ mod estimates;
 mod fit;
 mod header;
 mod runs;
+mod scope;
 mod verdict;
 
 #[cfg(test)]
@@ -63,7 +64,7 @@ pub fn page(contents: &Contents<'_>) -> String {
     let sections: Vec<Section> = [
         verdict::section(contents),
         estimates::parameters::section(contents),
-        verdict::assumptions(contents),
+        scope::section(contents),
         checks::section(contents),
         calibrations::calibration::section(contents),
         calibrations::gravity::section(contents),

@@ -27,15 +27,6 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     }
 }
 
-/// Section on detection limits and assumptions.
-pub(super) fn assumptions(contents: &Contents<'_>) -> Section {
-    Section {
-        id: "scope",
-        title: "Detection limits and assumptions",
-        body: lists(contents.identification),
-    }
-}
-
 /// Verdict of each model in one sentence.
 pub(super) fn summary(identification: &Identification) -> String {
     let verdicts = &identification.verdicts;
@@ -163,29 +154,4 @@ fn warnings(identification: &Identification) -> String {
         .map(|warning| format!("<li>{}</li>\n", prose(&capital(warning))))
         .collect();
     format!("<h3 id=\"warnings\">Warnings</h3>\n<ul class=\"warnings\">\n{items}</ul>\n")
-}
-
-/// Lists of detection limits and of assumptions of every result.
-fn lists(identification: &Identification) -> String {
-    let list = |id: &str, title: &str, words: &str, all: &[String]| {
-        if all.is_empty() {
-            return String::new();
-        }
-        let items = all.iter();
-        let items = items.map(|one| format!("<li>{}</li>\n", prose(&capital(one))));
-        let items: String = items.collect();
-        let words = paragraph(words);
-        format!("<h3 id=\"{id}\">{title}</h3>\n{words}<ul class=\"plain\">\n{items}</ul>\n")
-    };
-    list(
-        "unseen",
-        "Detection limits",
-        "For each kind of fault: the sizes that nine of ten such data sets would reveal, and the parameter that a fault of this size would shift most. A smaller fault shifts it in proportion:",
-        &identification.unseen,
-    ) + &list(
-        "assumptions",
-        "Assumptions",
-        "These data cannot test the following; the result relies on it:",
-        &identification.assumptions,
-    )
 }

@@ -56,7 +56,10 @@ pub fn rows(
         let one = |number: u64| {
             let logs = draw::logs(subject, &records, 1.0, number);
             let result = logs.and_then(|logs| identified_logs(subject, &logs));
-            result.map_or_else(|_| Draw::refused(), |one| Draw::new(&one))
+            result.map_or_else(
+                |_| Draw::refused(),
+                |one| Draw::new(&one, &trap.known, subject.info().actuators),
+            )
         };
         let results: Vec<Draw> = (1..=draws.count).into_par_iter().map(one).collect();
         let row = FaultRow::new(subject.info().name, &trap.name, &results);

@@ -1,6 +1,7 @@
 //! One row of the fault table: sums over the draws of one fault.
 
-use overact_identification::{Estimator, Grade, Identification, Stage};
+use crate::traps::KnownFault;
+use overact_identification::{Detectable, Estimator, Grade, Identification, Stage};
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt};
 
@@ -17,7 +18,7 @@ struct UsableError {
     name: String,
     /// Its error, with its sign, in standard deviations.
     error: f64,
-    /// Whether the report names it among the parameters that an undetected fault would shift.
+    /// Whether the report states that this fault may be hidden, and that it shifts the parameter.
     is_named: bool,
 }
 
@@ -42,8 +43,9 @@ impl Draw {
         }
     }
 
-    /// The result of an identification: parameters of the first verdict's stage.
-    pub(super) fn new(result: &Identification) -> Self {
+    /// The identification of data with these faults, for a robot with these actuators: parameters of
+    /// the first verdict's stage.
+    pub(super) fn new(result: &Identification, known: &[KnownFault], actuators: &[&str]) -> Self {
         let checks = result.checks.iter().filter(|check| !check.passed);
         let checks = checks.map(|check| check.kind.name()).collect();
         let Some(verdict) = result.verdicts.first() else {
@@ -64,7 +66,9 @@ impl Draw {
                 && matches!(one.stage, Stage::Base | Stage::Recommended)
         });
         let parameters = stages.flat_map(|one| &one.parameters);
-        let limits = result.unseen.concat();
+        let stated = known.iter();
+        let stated = stated.filter_map(|one| one.stated_in(result, actuators));
+        let stated: Vec<&str> = stated.flat_map(Detectable::parameters).collect();
         let errors = parameters
             .filter(|one| usable(&one.name))
             .filter_map(|one| {
@@ -72,7 +76,7 @@ impl Draw {
                 Some(UsableError {
                     name: one.name.clone(),
                     error: (one.value - one.true_value?) * HALF_WIDTH / half,
-                    is_named: limits.contains(&format!("`{}`", one.name)),
+                    is_named: stated.contains(&one.name.as_str()),
                 })
             });
         Self {
@@ -107,7 +111,8 @@ pub struct FaultRow {
     /// These are at least half of the draws with usable parameters: noise decides whether a small
     /// parameter is recommended, so that its mean over few draws is that of a selection.
     pub mean: Option<(f64, String)>,
-    /// The same of parameters that the report does not name next to a detection limit.
+    /// The same of parameters that the report does not name next to the detection limit of this fault,
+    /// or whose detection limit is smaller than the fault.
     pub unnamed_mean: Option<(f64, String)>,
     /// Fraction of the values of usable parameters beyond 3.5 standard deviations, in percent.
     pub beyond_percent: f64,

@@ -1,7 +1,10 @@
 //! List of the faults.
 
-use super::alter;
-use overact_identification::CheckKind;
+use super::{
+    alter,
+    known_fault::{KnownFault, Place},
+};
+use overact_identification::FaultKind;
 use overact_simulation::{Experiment, Record};
 
 /// Change of records.
@@ -22,9 +25,8 @@ pub struct Trap {
     pub alter: Box<Change>,
     /// Why no data can reveal it, if so.
     pub assumed: Option<&'static str>,
-    /// Size, if every report searches for it: check, name of the actuator or length with unit, and
-    /// size.
-    pub size: Option<(CheckKind, (&'static str, &'static str), f64)>,
+    /// The faults for which a report states detection limits, if it is some of these.
+    pub known: Vec<KnownFault>,
 }
 
 impl Trap {
@@ -35,7 +37,7 @@ impl Trap {
             plan: None,
             alter: Box::new(alter),
             assumed: None,
-            size: None,
+            known: Vec::new(),
         }
     }
 
@@ -73,9 +75,9 @@ impl Trap {
         }
     }
 
-    fn sized(self, kind: CheckKind, (name, unit): (&'static str, &'static str), size: f64) -> Self {
+    pub(super) fn known(self, known: impl IntoIterator<Item = KnownFault>) -> Self {
         Self {
-            size: Some((kind, (name, unit), size)),
+            known: known.into_iter().collect(),
             ..self
         }
     }
@@ -86,7 +88,7 @@ impl Trap {
 pub fn traps(robot: &str) -> Vec<Trap> {
     let mut all = timing();
     all.extend(drives());
-    all.extend(encoders(first_actuator(robot)));
+    all.extend(encoders());
     all.extend(missing());
     all.extend(labels(robot));
     all.extend(geometry(robot));
@@ -95,8 +97,10 @@ pub fn traps(robot: &str) -> Vec<Trap> {
 
 fn timing() -> Vec<Trap> {
     vec![
-        Trap::each("torques 1 ms late", |run| alter::late(run, 1e-3)),
-        Trap::each("torques 5 ms late", |run| alter::late(run, 5e-3)),
+        Trap::each("torques 1 ms late", |run| alter::late(run, 1e-3))
+            .known([KnownFault::of_robot(FaultKind::Delay, 1e-3)]),
+        Trap::each("torques 5 ms late", |run| alter::late(run, 5e-3))
+            .known([KnownFault::of_robot(FaultKind::Delay, 5e-3)]),
         Trap::each("torques behind a first-order lag of 5 ms", |run| {
             alter::lag(run, 5e-3);
         }),
@@ -109,14 +113,16 @@ fn timing() -> Vec<Trap> {
         Trap::each("positions 2 ms late", |run| alter::late(run, -2e-3)),
         Trap::each("torque of drive 2 alone 2 ms late", |run| {
             alter::late_drive(run, 1, 2e-3);
-        }),
+        })
+        .known([KnownFault::of_actuator(FaultKind::DriveDelay, 1, 2e-3)]),
         Trap::each("3 % of the samples dropped and restamped", |run| {
             alter::drop_samples(run, 0.03);
         }),
         Trap::each("sampling frequency 5 % too high", |run| {
             run.sampling_hz *= 1.05;
         })
-        .assumed("a clock that is wrong by one factor"),
+        .assumed("a clock that is wrong by one factor")
+        .known([KnownFault::of_robot(FaultKind::Clock, 0.05)]),
     ]
 }
 
@@ -124,10 +130,12 @@ fn drives() -> Vec<Trap> {
     vec![
         Trap::each("gain of drive 1 10 % low", |run| {
             alter::torque(run, 0, |torque| 0.9 * torque);
-        }),
+        })
+        .known([KnownFault::of_actuator(FaultKind::Gain, 0, 0.1)]),
         Trap::each("gain of drive 2 3 % low", |run| {
             alter::torque(run, 1, |torque| 0.97 * torque);
-        }),
+        })
+        .known([KnownFault::of_actuator(FaultKind::Gain, 1, 0.03)]),
         Trap::each("all gains 5 % high", |run| {
             run.torques.iter_mut().for_each(|torque| *torque *= 1.05);
         })
@@ -159,7 +167,8 @@ fn drives() -> Vec<Trap> {
         Trap::each("all torques zero", |run| run.torques.fill(0.0)),
         Trap::each("gain of drive 1 falls by 10 % during each run", |run| {
             alter::torque_in_time(run, 0, |torque, part| torque * (1.0 - 0.1 * part));
-        }),
+        })
+        .known([KnownFault::torque("gain-time", 0, None)]),
         Trap::each("torque of drive 1 zero for 1 % of the time", |run| {
             alter::torque_in_time(run, 0, |torque, part| {
                 if (0.40..0.41).contains(&part) {
@@ -191,30 +200,22 @@ fn drives() -> Vec<Trap> {
     ]
 }
 
-/// Name of a robot's first actuator, for robots whose reports contain encoder offsets.
-fn first_actuator(robot: &str) -> &'static str {
-    match robot {
-        "FiveBar" => "left",
-        "Rx90" => "1",
-        _ => "leg1",
-    }
-}
-
-fn encoders(first: &'static str) -> Vec<Trap> {
+fn encoders() -> Vec<Trap> {
     let degree = 1_f64.to_radians();
+    let first = |fault: FaultKind, size: f64| [KnownFault::of_actuator(fault, 0, size)];
     vec![
         Trap::each("encoder 1 off by 0.2 deg", move |run| {
             alter::position(run, 0, |q| q + 0.2 * degree);
         })
-        .sized(CheckKind::EncoderOffset, (first, "rad"), 0.2 * degree),
+        .known(first(FaultKind::EncoderOffset, 0.2 * degree)),
         Trap::each("encoder 1 off by 1 deg", move |run| {
             alter::position(run, 0, |q| q + degree);
         })
-        .sized(CheckKind::EncoderOffset, (first, "rad"), degree),
+        .known(first(FaultKind::EncoderOffset, degree)),
         Trap::each("positions of actuator 1 1 % too large", |run| {
             alter::position(run, 0, |q| 1.01 * q);
         })
-        .sized(CheckKind::EncoderOffset, (first, ""), 0.01),
+        .known(first(FaultKind::EncoderScale, 0.01)),
         Trap::each("encoder 1 out of centre by 0.01 rad", |run| {
             alter::position(run, 0, |q| q + 0.01 * q.sin());
         }),
@@ -264,7 +265,8 @@ fn missing() -> Vec<Trap> {
     vec![
         Trap::new("a spring at actuator 1", |runs| {
             alter::add(runs, 0, |at| at.position, 0.2);
-        }),
+        })
+        .known([KnownFault::torque("position", 0, None)]),
         Trap::new("friction of actuator 1 grows with time", |runs| {
             alter::add(runs, 0, |at| at.velocity.signum() * at.time, 0.1);
         }),
@@ -281,13 +283,16 @@ fn missing() -> Vec<Trap> {
             |runs| {
                 alter::add(runs, 1, |at| at.velocity * at.velocity.abs(), 0.1);
             },
-        ),
+        )
+        .known([KnownFault::torque("drag", 1, None)]),
         Trap::new("cogging at actuator 1", |runs| {
             alter::add(runs, 0, |at| (24.0 * at.position).sin(), 0.1);
-        }),
+        })
+        .known([KnownFault::torque("waves", 0, None)]),
         Trap::new("torque 1 drifts with time", |runs| {
             alter::add(runs, 0, |at| at.time, 0.1);
-        }),
+        })
+        .known([KnownFault::torque("time", 0, None)]),
     ]
 }
 
@@ -356,11 +361,14 @@ fn geometry(robot: &str) -> Vec<Trap> {
             weightless,
         ],
         "Rx90" => vec![
-            Trap::plant("upper arm 1 % long", "d3 = \"0.45 m\"", "d3 = \"0.4545 m\"").sized(
-                CheckKind::EncoderOffset,
-                ("d_3_arm", "m"),
-                0.0045,
-            ),
+            Trap::plant("upper arm 1 % long", "d3 = \"0.45 m\"", "d3 = \"0.4545 m\"").known([
+                KnownFault {
+                    fault: FaultKind::Length,
+                    shape: None,
+                    place: Place::Length("d_3_arm"),
+                    size: Some(0.0045),
+                },
+            ]),
             Trap::plant(
                 "gravity tilted by 5 deg",
                 "gravity = [0, 0, \"-9.81 m/s^2\"]",

@@ -1,10 +1,9 @@
 //! Parameter errors of an identification, and its verdict.
 
-use super::Trap;
+use super::{Trap, known_fault::KnownFault};
 use crate::{Failure, Subject};
 use overact_identification::{
-    Check, CheckKind, Dataset, Detectable, Estimate, Grade, Identification, LineError, Log, Stage,
-    identify,
+    Check, CheckKind, Dataset, Estimate, Grade, Identification, LineError, Log, Stage, identify,
 };
 use overact_simulation::{Experiment, Record, simulate};
 use serde::Serialize;
@@ -159,13 +158,16 @@ pub fn outcome(
     match result {
         Ok(result) => {
             let oracle = oracle(&result, faultless);
-            let honest = trap.size.and_then(|size| honest(faultless, size));
+            let actuators = subject.info().actuators;
+            let known = trap.known.first();
+            let honest = known.and_then(|known| honest(faultless, known, actuators));
+            let is_stated = |known: &KnownFault| known.stated_in(&result, actuators).is_some();
             let at_report = honest.map(|(size, threshold)| power(size, threshold));
             Outcome {
                 oracle,
                 honest: honest.map(|(size, _)| size),
                 power: at_report.or(oracle.map(|size| power(size, quantile(LEVEL)))),
-                assumed: start.assumed || trap.size.is_some_and(|size| is_stated(&result, size)),
+                assumed: start.assumed || trap.known.iter().any(is_stated),
                 ..summary(&result, start)
             }
         }
@@ -207,31 +209,18 @@ fn oracle(result: &Identification, faultless: &Identification) -> Option<f64> {
     Some(added.max(0.0).sqrt() / without.residual_deviation)
 }
 
-/// Check of an identification for faults of a kind and a name, with its detection limit.
-fn looked_for<'a>(
-    result: &'a Identification,
-    (kind, (name, unit)): (CheckKind, (&str, &str)),
-) -> Option<(&'a Check, &'a Detectable)> {
-    let own = result.checks.iter().filter(|check| check.kind == kind);
-    let mut all = own.flat_map(|check| check.detectable.iter().map(move |one| (check, one)));
-    all.find(|(_, one)| one.name == name && one.unit == unit)
-}
-
 /// Size of a fault in standard deviations of faultless data, and the threshold of its check.
 fn honest(
     faultless: &Identification,
-    (kind, name, size): (CheckKind, (&str, &str), f64),
+    known: &KnownFault,
+    actuators: &[&str],
 ) -> Option<(f64, f64)> {
-    let (check, found) = looked_for(faultless, (kind, name))?;
-    Some((size.abs() / found.deviation, check.threshold))
-}
-
-/// Whether the report states that a fault of this size may be hidden and bias parameters.
-fn is_stated(result: &Identification, (kind, name, size): (CheckKind, (&str, &str), f64)) -> bool {
-    let found = looked_for(result, (kind, name));
-    found.is_some_and(|(check, one)| {
-        check.passed && one.shift_deviations > LARGEST_ERROR && size.abs() <= one.size
-    })
+    let (check, limit) = known.limit_in(faultless, actuators)?;
+    if check.kind != CheckKind::EncoderOffset {
+        // The thresholds of other checks allow for harmless sizes.
+        return None;
+    }
+    Some((known.size?.abs() / limit.deviation, check.threshold))
 }
 
 /// Identifies from records.

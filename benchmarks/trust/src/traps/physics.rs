@@ -1,8 +1,9 @@
 //! Effects that a model lacks, of one drive or of all, and motions that excite too little.
 
-use super::{Trap, alter};
+use super::{Trap, alter, known_fault::KnownFault};
 use crate::{Failure, Subject};
 use overact::{Columns, Function, Model};
+use overact_identification::FaultKind;
 use overact_simulation::{Experiment, Record, Trajectory};
 
 /// Ratio of a gear that is wrong by one tooth of 50.
@@ -16,20 +17,22 @@ const FORCE: f64 = 5.0;
 /// # Errors
 /// A robot that cannot be evaluated in another gravity.
 pub fn physics(subject: &Subject) -> Result<Vec<Trap>, Failure> {
-    let mut all = torque_sensing();
+    let drives = subject.info().sizes.actuators;
+    let mut all = torque_sensing(drives);
     all.extend((0..2).map(gear));
-    all.push(Trap::each(
-        "load-dependent friction of 2 % at drive 2",
-        |run| {
+    let load = |drive: usize| KnownFault::torque("load", drive, Some(0.02));
+    all.push(
+        Trap::each("load-dependent friction of 2 % at drive 2", |run| {
             alter::load_friction(run, 1, 0.02);
-        },
-    ));
-    all.push(Trap::each(
-        "load-dependent friction of 2 % at all drives",
-        |run| {
+        })
+        .known([load(1)]),
+    );
+    all.push(
+        Trap::each("load-dependent friction of 2 % at all drives", |run| {
             of_all(run, |run, i| alter::load_friction(run, i, 0.02));
-        },
-    ));
+        })
+        .known((0..drives).map(load)),
+    );
     let coordinates = subject.info().coordinates;
     all.extend(coordinates.first().map(|name| still(name)));
     if coordinates.len() > 1 {
@@ -39,36 +42,48 @@ pub fn physics(subject: &Subject) -> Result<Vec<Trap>, Failure> {
     Ok(all)
 }
 
-/// Errors of the measured torques.
-fn torque_sensing() -> Vec<Trap> {
+/// Errors of the measured torques of a robot with this number of drives.
+fn torque_sensing(drives: usize) -> Vec<Trap> {
     let ripple = |torque: f64, position: f64| torque * (1.0 + 0.03 * (12.0 * position).sin());
+    let saturation = |drive: usize| KnownFault::torque("saturation", drive, None);
+    let drift = |drive: usize| KnownFault::torque("gain-time", drive, None);
+    let waves = |drive: usize| KnownFault::torque("load-waves", drive, Some(0.03));
+    let neighbours: Vec<(usize, usize)> =
+        (1..drives).flat_map(|i| [(i - 1, i), (i, i - 1)]).collect();
+    let crosstalk =
+        |&(to, _): &(usize, usize)| KnownFault::of_actuator(FaultKind::Crosstalk, to, 0.04);
+    let known_crosstalk: Vec<KnownFault> = neighbours.iter().map(crosstalk).collect();
     vec![
         Trap::each("torque constant of drive 1 saturates by 10 %", |run| {
             alter::saturating_constant(run, 0, 0.1);
-        }),
+        })
+        .known([saturation(0)]),
         Trap::each("torque constants of all drives saturate by 10 %", |run| {
             of_all(run, |run, i| alter::saturating_constant(run, i, 0.1));
-        }),
+        })
+        .known((0..drives).map(saturation)),
         Trap::each("crosstalk of 4 % from drive 2 to drive 1", |run| {
             alter::crosstalk(run, &[(0, 1)], 0.04);
-        }),
-        Trap::each("crosstalk of 4 % between neighbouring drives", |run| {
-            let n = run.actuators.len();
-            let pairs: Vec<(usize, usize)> =
-                (1..n).flat_map(|i| [(i - 1, i), (i, i - 1)]).collect();
-            alter::crosstalk(run, &pairs, 0.04);
-        }),
+        })
+        .known([crosstalk(&(0, 1))]),
+        Trap::each("crosstalk of 4 % between neighbouring drives", move |run| {
+            alter::crosstalk(run, &neighbours, 0.04);
+        })
+        .known(known_crosstalk),
         Trap::each("all gains fall by 10 % during each run", |run| {
             of_all(run, |run, i| {
                 alter::torque_in_time(run, i, |torque, part| torque * (1.0 - 0.1 * part));
             });
-        }),
+        })
+        .known((0..drives).map(drift)),
         Trap::each("load-dependent ripple of 3 % at drive 1", move |run| {
             alter::torque_at_position(run, 0, ripple);
-        }),
+        })
+        .known([waves(0)]),
         Trap::each("load-dependent ripple of 3 % at all drives", move |run| {
             of_all(run, |run, i| alter::torque_at_position(run, i, ripple));
-        }),
+        })
+        .known((0..drives).map(waves)),
     ]
 }
 
@@ -80,10 +95,15 @@ fn of_all(run: &mut Record, change: impl Fn(&mut Record, usize)) {
 /// Position and torque of a drive behind a gear with one tooth more.
 fn gear(drive: usize) -> Trap {
     let name = format!("gear of drive {} wrong by one tooth", drive + 1);
-    Trap::each(&name, move |run| {
+    let trap = Trap::each(&name, move |run| {
         alter::position(run, drive, |q| TOOTH * q);
         alter::torque(run, drive, |torque| torque / TOOTH);
-    })
+    });
+    trap.known([KnownFault::of_actuator(
+        FaultKind::GearRatio,
+        drive,
+        TOOTH - 1.0,
+    )])
 }
 
 /// A coordinate that never moves.

@@ -3,7 +3,8 @@
 use super::Context;
 use crate::{
     assessment::{
-        check::{Check, Detectable, DetectableShift, Grade},
+        check::{Check, Grade},
+        detectable::{Detectable, DetectableShift},
         evidence::{Axis, Curve, Evidence},
         hypotheses::{FaultHypothesis, Group, Scores, WaldTest},
     },
@@ -13,10 +14,6 @@ use crate::{
 
 /// Half width of a 95 % interval, in standard deviations.
 const HALF_WIDTH: f64 = 1.96;
-
-/// Detection limits are reported if such a fault shifts a parameter by more than this many standard
-/// deviations.
-pub(in crate::assessment) const HARMFUL: f64 = 3.0;
 
 /// A detected fault that shifts a parameter by more than its interval spoils all parameters that it
 /// shifts by more than this many standard deviations.
@@ -121,30 +118,16 @@ impl TestedHypothesis {
         shifts: impl Iterator<Item = ParameterShift>,
     ) -> Detectable {
         let base = context.estimates_of(Stage::Base).next();
-        let mut all: Vec<DetectableShift> = Vec::new();
-        for shift in shifts.filter(|shift| shift.deviations.is_finite()) {
-            let parameter = base.map_or_else(String::new, |base| name(base, shift.column));
-            // Of two stages, the larger shift of a parameter comes first.
-            let is_new = all.iter().all(|one| one.parameter != parameter);
-            if all.is_empty() || is_new && shift.deviations > HARMFUL {
-                all.push(DetectableShift {
-                    parameter,
-                    deviations: shift.deviations,
-                });
-            }
-        }
-        let others = all.split_off(all.len().min(1));
-        let most = all.pop();
-        Detectable {
-            name: String::new(),
-            unit,
-            fault: self.hypothesis(scores),
+        let named = |shift: ParameterShift| DetectableShift {
+            parameter: base.map_or_else(String::new, |base| name(base, shift.column)),
+            deviations: shift.deviations,
+        };
+        let finite = shifts.filter(|shift| shift.deviations.is_finite());
+        let limit = Detectable {
             deviation: self.wald.deviation,
-            size,
-            shift_deviations: most.as_ref().map_or(0.0, |most| most.deviations),
-            parameter: most.map_or_else(String::new, |most| most.parameter),
-            others,
-        }
+            ..Detectable::new(self.hypothesis(scores), unit, size)
+        };
+        limit.shifting(finite.map(named))
     }
 
     /// Shifts of base and recommended parameters of the first model, largest first.

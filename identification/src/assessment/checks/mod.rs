@@ -16,8 +16,6 @@ pub(crate) mod units;
 
 use overact::Model;
 
-pub(super) use fault_hypotheses::HARMFUL;
-
 use super::{
     check::{About, Check, CheckKind},
     hypotheses::{Pace, Scores},

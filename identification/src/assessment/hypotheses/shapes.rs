@@ -151,6 +151,36 @@ impl Shape {
         }
     }
 
+    /// Name in a JSON document.
+    pub(crate) const fn key(self) -> &'static str {
+        match self {
+            Self::Constant => "constant",
+            Self::Velocity => "velocity",
+            Self::Sign => "sign",
+            Self::Speed => "speed",
+            Self::Drag => "drag",
+            Self::Stribeck => "stribeck",
+            Self::Load => "load",
+            Self::Magnitude => "magnitude",
+            Self::Acceleration => "acceleration",
+            Self::Position => "position",
+            Self::PositionSign => "position-sign",
+            Self::Cosine => "cosine",
+            Self::Sine => "sine",
+            Self::Time => "time",
+            Self::TimeSign => "time-sign",
+            Self::GainTime => "gain-time",
+            Self::Saturation => "saturation",
+            Self::Waves => "waves",
+            Self::LoadWaves => "load-waves",
+        }
+    }
+
+    /// Whether it is a sum of waves over the position.
+    pub(crate) const fn is_waves(self) -> bool {
+        matches!(self, Self::Waves | Self::LoadWaves)
+    }
+
     /// Name in a sentence.
     pub(crate) const fn words(self) -> &'static str {
         match self {

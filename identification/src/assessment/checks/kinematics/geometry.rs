@@ -3,14 +3,15 @@
 //! If there are more encoders than degrees of freedom, the closure determines them far better.
 
 use crate::assessment::{
-    check::{About, Check, CheckKind, Detectable},
+    check::{About, Check, CheckKind},
     checks::{
         Context,
         fault_hypotheses::{
-            HARMFUL, TestedHypothesis, harm, most_significant, parabola, tested, worst_harm,
+            TestedHypothesis, harm, most_significant, parabola, tested, worst_harm,
         },
         level::{level, origin},
     },
+    detectable::{Detectable, HARMFUL},
     hypotheses::{FaultHypothesis, Group, Misreading, Scores},
 };
 use overact_logs::{Error, significant};

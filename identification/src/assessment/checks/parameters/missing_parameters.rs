@@ -3,14 +3,13 @@
 //! Such a dependence is an effect that the model lacks.
 
 use crate::assessment::{
-    check::{About, Check, CheckKind, Detectable, Grade},
+    check::{About, Check, CheckKind, Grade},
     checks::{
         Context,
-        fault_hypotheses::{
-            HARMFUL, Harm, TestedHypothesis, harm, most_significant, tested, worst_harm,
-        },
+        fault_hypotheses::{Harm, TestedHypothesis, harm, most_significant, tested, worst_harm},
         level::{level, origin},
     },
+    detectable::Detectable,
     evidence::{Axis, Curve, Evidence},
     hypotheses::{FaultHypothesis, Group, Scores, Shape, wave_amplitude},
 };
@@ -78,7 +77,8 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 /// Detection limits of the torques and forces that the model may lack.
 ///
 /// Of the equations of each drive and coordinate, and of the potentials, these are the most harmful
-/// one and each further one that shifts parameters which no more harmful one shifts.
+/// one and each further one that shifts parameters which no more harmful one shifts. Waves over the
+/// position come last.
 fn detection_limits(
     context: &Context<'_>,
     scores: &Scores,
@@ -112,7 +112,7 @@ fn detection_limits(
             _ => "",
         };
         let limit = match hypothesis.shape() {
-            Some(Shape::Waves | Shape::LoadWaves) => {
+            Some(shape) if shape.is_waves() => {
                 one.detectable_in_worst(context, scores, unit, level, wave_amplitude)
             }
             _ => one.detectable_in_base(context, scores, unit, one.wald.visible(level)),
@@ -120,7 +120,7 @@ fn detection_limits(
         let Some(limit) = limit else {
             continue;
         };
-        if limit.shift_deviations <= HARMFUL {
+        if !limit.is_harmful() {
             continue;
         }
         let limit = Detectable {
@@ -129,7 +129,12 @@ fn detection_limits(
         };
         harmful.push((line, limit));
     }
-    harmful.sort_by(|(_, a), (_, b)| b.shift_deviations.total_cmp(&a.shift_deviations));
+    // A sum of waves imitates nearly any torque, so that it is the most harmful one of nearly all.
+    let is_waves = |limit: &Detectable| limit.hypothesis.shape().is_some_and(Shape::is_waves);
+    harmful.sort_by(|(_, a), (_, b)| {
+        let size = b.shift_deviations.total_cmp(&a.shift_deviations);
+        is_waves(a).cmp(&is_waves(b)).then(size)
+    });
     let mut named: Vec<(EquationLine, String)> = Vec::new();
     harmful.retain(|(line, limit)| {
         let known = named.len();

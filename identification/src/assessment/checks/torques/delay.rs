@@ -1,12 +1,13 @@
 //! Tests for a delay between torques and motion.
 
 use crate::assessment::{
-    check::{About, Check, CheckKind, Detectable},
+    check::{About, Check, CheckKind},
     checks::{
         Context,
         fault_hypotheses::{self, TestedHypothesis, only, parabola, tested, worst_harm},
         level::{level, origin},
     },
+    detectable::Detectable,
     hypotheses::{FaultHypothesis, Group, Scores},
 };
 use overact_logs::{Error, significant};

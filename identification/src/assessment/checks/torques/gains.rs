@@ -1,12 +1,13 @@
 //! Tests whether the gains of the drives agree with each other.
 
 use crate::assessment::{
-    check::{About, Check, CheckKind, Detectable},
+    check::{About, Check, CheckKind},
     checks::{
         Context,
         fault_hypotheses::{Harm, TestedHypothesis, most_significant, only, parabola, worst_harm},
         level::{level, origin},
     },
+    detectable::Detectable,
     hypotheses::FaultHypothesis,
 };
 use overact_logs::{Error, significant};

@@ -9,10 +9,7 @@
 //! Presliding friction has the same effect at each reversal. The second derivative of all dry
 //! friction, one column for all drives, detects it.
 
-use super::{
-    half_band::confirms,
-    smoothing::{OF_MEAN, UNIT, harmless},
-};
+use super::{half_band::confirms, smoothing::harmless};
 use crate::assessment::{
     check::{About, Check, CheckKind},
     checks::{
@@ -20,6 +17,7 @@ use crate::assessment::{
         fault_hypotheses::{TestedHypothesis, dry_friction, harm, only, parabola},
         level::{level, origin},
     },
+    detectable::{OF_MEAN, UNIT_OF_SMOOTHING},
     hypotheses::{FaultHypothesis, Scores},
 };
 use overact_logs::{Error, significant};
@@ -109,7 +107,7 @@ impl TestLimits {
             .detecting(vec![one.detectable(
                 context,
                 scores,
-                UNIT,
+                UNIT_OF_SMOOTHING,
                 wald.visible(self.level),
             )])
             .shown_by(parabola(

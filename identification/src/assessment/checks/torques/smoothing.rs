@@ -18,18 +18,13 @@ use crate::assessment::{
         level::{level, origin},
         motion::filters::{equal_bands, torque_band},
     },
+    detectable::{OF_MEAN, UNIT_OF_SMOOTHING},
     hypotheses::FaultHypothesis,
 };
 use overact_logs::{Error, significant};
 
 /// Harmless length of a moving average, in sampling intervals; drives hold their torque.
 const HARMLESS: f64 = 2.0;
-
-/// s of a moving average over T is T² divided by this.
-pub(in crate::assessment) const OF_MEAN: f64 = 24.0;
-
-/// Unit of s.
-pub(in crate::assessment) const UNIT: &str = "s²";
 
 /// Harmless s.
 pub(crate) fn harmless(context: &Context<'_>) -> f64 {
@@ -70,7 +65,12 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
                     origin(1)
                 ),
             )
-            .detecting(vec![whole.detectable(context, scores, UNIT, visible)])
+            .detecting(vec![whole.detectable(
+                context,
+                scores,
+                UNIT_OF_SMOOTHING,
+                visible,
+            )])
             .shown_by(parabola(
                 wald,
                 "Residual for smoothed torques",
