@@ -34,10 +34,7 @@ pub fn physics(subject: &Subject) -> Result<Vec<Trap>, Failure> {
         .known((0..drives).map(load)),
     );
     let coordinates = subject.info().coordinates;
-    all.extend(coordinates.first().map(|name| still(name)));
-    if coordinates.len() > 1 {
-        all.extend(coordinates.last().map(|name| still(name)));
-    }
+    all.extend(coordinates.iter().map(|name| still(name)));
     all.extend(forces(subject)?);
     Ok(all)
 }

@@ -14,6 +14,10 @@
 //!
 //! The columns are of first order, and real faults differ from all of them. Faults that explain at
 //! least half as much as the best one are therefore admissible, too.
+//!
+//! If the same fault is significant at several drives, it is likely to be present at all of them,
+//! below the detection limit of the others. Parameters that such a fault of one drive shifts at its
+//! detection limit are then unusable, too.
 
 use super::{
     Context,
@@ -67,15 +71,43 @@ pub(super) fn spoil(context: &Context<'_>, checks: &mut [Check]) {
 /// All parameters that an admissible fault shifts by more than their intervals.
 fn shifted(context: &Context<'_>, scores: &Scores) -> Vec<String> {
     let found = tested(scores, Group::hypotheses(scores, is_complete));
+    let level = level(found.len());
+    let admissible = admissible(&found);
+    let by_one = admissible.iter();
+    let by_one = by_one.flat_map(|one| harm(context, scores, one).spoiled);
+    let by_all = of_all_drives(&found, &admissible, scores);
+    let by_all = by_all
+        .into_iter()
+        .flat_map(|one| one.shifted_at_limit(context, scores, level));
     let mut names: Vec<String> = Vec::new();
-    for one in admissible(&found) {
-        for name in harm(context, scores, one).spoiled {
-            if !names.contains(&name) {
-                names.push(name);
-            }
+    for name in by_one.chain(by_all) {
+        if !names.contains(&name) {
+            names.push(name);
         }
     }
     names
+}
+
+/// Each drive's own of the faults that all drives are likely to have.
+///
+/// Such a fault is significant at several drives, and admissible at one of them.
+fn of_all_drives<'a>(
+    found: &'a [TestedHypothesis],
+    admissible: &[&TestedHypothesis],
+    scores: &Scores,
+) -> Vec<&'a TestedHypothesis> {
+    let level = level(found.len());
+    let parts = |all: FaultHypothesis| {
+        let is_part = move |one: &&TestedHypothesis| one.hypothesis(scores).is_joined_by(all);
+        found.iter().filter(is_part)
+    };
+    let is_likely = |all: &FaultHypothesis| {
+        let significant = parts(*all).filter(|one| one.wald.probability < level);
+        let is_admissible = |one: &&TestedHypothesis| one.hypothesis(scores).is_joined_by(*all);
+        significant.count() >= 2 && admissible.iter().any(|one| is_admissible(&one))
+    };
+    let likely = scores.hypotheses.iter().filter(|all| is_likely(all));
+    likely.flat_map(|all| parts(*all)).collect()
 }
 
 /// Whether the columns of a fault describe its whole effect.

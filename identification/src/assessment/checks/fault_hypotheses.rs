@@ -147,6 +147,20 @@ impl TestedHypothesis {
         all
     }
 
+    /// Base parameters that a fault at its detection limit would shift.
+    pub(super) fn shifted_at_limit(
+        &self,
+        context: &Context<'_>,
+        scores: &Scores,
+        level: f64,
+    ) -> Vec<String> {
+        let visible = self.wald.visible(level);
+        let limit = self.detectable_in_base(context, scores, "", visible);
+        let harmful = limit.filter(Detectable::is_harmful);
+        let names = |limit: Detectable| limit.parameters().map(str::to_owned).collect();
+        harmful.map_or_else(Vec::new, names)
+    }
+
     /// Shifts of the parameters of an estimate, from the test with its columns.
     fn shifts_of(&self, estimate: &Estimate, wald: &WaldTest) -> Vec<ParameterShift> {
         let factor = self.band_factor * self.size.map_or(1.0, |size| size / wald.size());

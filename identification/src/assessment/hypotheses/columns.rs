@@ -96,7 +96,7 @@ impl FaultHypothesis {
     }
 
     /// Whether it is one of several faults that this one joins, with a size for each.
-    fn is_joined_by(self, all: Self) -> bool {
+    pub(crate) fn is_joined_by(self, all: Self) -> bool {
         match (all, self) {
             (Self::AllTorques(shape), Self::Torque(_, own)) => shape == own,
             (Self::AllCrosstalk, Self::Crosstalk { .. }) => true,
