@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::hypotheses::{FaultHypothesis, Shape};
+use super::hypotheses::{FaultHypothesis, Misreading, Shape};
 use overact_logs::significant;
 
 /// A fault that shifts a parameter by more than this many standard deviations is harmful.
@@ -65,6 +65,10 @@ pub enum FaultKind {
     EncoderOffset,
     /// Scale of the position of one actuator, or of all.
     EncoderScale,
+    /// Error of an encoder with the sine or cosine of its position, as of a disc out of centre.
+    Eccentricity,
+    /// Half of the play of an encoder.
+    Play,
     /// Ratio of a gear: positions and torques of its drive.
     GearRatio,
     /// A described length.
@@ -89,9 +93,11 @@ pub enum FaultKind {
 
 impl FaultKind {
     /// All kinds, in the order of a report.
-    pub(super) const ALL: [Self; 12] = [
+    pub(super) const ALL: [Self; 14] = [
         Self::EncoderOffset,
         Self::EncoderScale,
+        Self::Eccentricity,
+        Self::Play,
         Self::GearRatio,
         Self::Length,
         Self::Gain,
@@ -106,9 +112,9 @@ impl FaultKind {
 
     const fn of(hypothesis: FaultHypothesis) -> Self {
         match hypothesis {
-            FaultHypothesis::Offset(_)
-            | FaultHypothesis::Eccentric(..)
-            | FaultHypothesis::Play(_) => Self::EncoderOffset,
+            FaultHypothesis::Offset(_) => Self::EncoderOffset,
+            FaultHypothesis::Eccentric(..) => Self::Eccentricity,
+            FaultHypothesis::Play(_) => Self::Play,
             FaultHypothesis::Scale(_) | FaultHypothesis::Scales => Self::EncoderScale,
             FaultHypothesis::Gear(_) => Self::GearRatio,
             FaultHypothesis::Length(_) => Self::Length,
@@ -135,6 +141,8 @@ impl FaultKind {
         match self {
             Self::EncoderOffset => "zero of an encoder",
             Self::EncoderScale => "scale of an encoder",
+            Self::Eccentricity => "eccentricity of an encoder",
+            Self::Play => "half of the play of an encoder",
             Self::GearRatio => "ratio of a gear, with positions and torques of its drive",
             Self::Length => "length",
             Self::Gain => "gain of one drive",
@@ -235,6 +243,12 @@ impl Detectable {
             (_, FaultHypothesis::Scales) => String::from(" of all drives"),
             ("", _) => String::new(),
             (name, FaultHypothesis::Crosstalk { .. }) => format!(" in `{name}`"),
+            (name, FaultHypothesis::Eccentric(_, Misreading::Sine)) => {
+                format!(" of `{name}` with the sine of its position")
+            }
+            (name, FaultHypothesis::Eccentric(_, Misreading::Cosine)) => {
+                format!(" of `{name}` with the cosine of its position")
+            }
             (name, hypothesis) => match hypothesis.shape() {
                 Some(shape) => format!(" at `{name}` with {}", shape.words()),
                 None => format!(" of `{name}`"),

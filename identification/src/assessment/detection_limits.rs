@@ -19,9 +19,12 @@ pub(crate) fn detection_limits(checks: &[Check]) -> Vec<&Detectable> {
     harmful
 }
 
-/// The limits as sentences, one for each kind of faults.
+/// Largest number of faults that a sentence names.
+const NAMED: usize = 3;
+
+/// The limits as sentences, one for each kind of faults, with the most harmful ones.
 ///
-/// Of the torques that the model lacks, only the most harmful one of each drive is named.
+/// Of the torques that the model lacks, a sentence names one of each drive at most.
 pub(crate) fn sentences(limits: &[&Detectable]) -> Vec<String> {
     let of_kind = limits.chunk_by(|a, b| a.fault == b.fault);
     of_kind.map(sentence).collect()
@@ -38,10 +41,13 @@ fn sentence(limits: &[&Detectable]) -> String {
         one.fault != FaultKind::MissingTorque || before.iter().all(|other| other.name != one.name)
     };
     let first = visible.iter().enumerate().filter(is_first);
-    let each: Vec<String> = never
-        .into_iter()
-        .chain(first.map(|(_, one)| one.words()))
-        .collect();
+    let mut named: Vec<&Detectable> = first.map(|(_, one)| *one).collect();
+    named.sort_by(|a, b| b.shift_deviations.total_cmp(&a.shift_deviations));
+    named.truncate(NAMED);
+    let count = visible.len() - named.len();
+    let named = named.into_iter().map(Detectable::words);
+    let more = (count > 0).then(|| format!("and {count} more"));
+    let each: Vec<String> = never.into_iter().chain(named).chain(more).collect();
     let kind = limits.first().map_or("", |one| one.fault.words());
     format!("{kind}: {}", each.join(", "))
 }
@@ -102,7 +108,7 @@ mod tests {
             "zero of an encoder: 0.0091 rad of `left` (`zz_1` by 13 σ)",
             "scale of an encoder: 0.1 % of all drives (`zz_1` by 16 σ)",
             "ratio of a gear, with positions and torques of its drive: 2 % of `left` (`zz_1` by 8 σ)",
-            "gain of one drive: 3 % of `left` (`zz_1` by 7 σ), 10 % of `right` (`zz_1` by 86 σ)",
+            "gain of one drive: 10 % of `right` (`zz_1` by 86 σ), 3 % of `left` (`zz_1` by 7 σ)",
             "delay of all torques: 0.28 ms (`zz_1` by 5 σ)",
             "delay of the torque of one drive: 3 ms of `right` (`zz_1` by 12 σ)",
             "smoothing of the torques: a mean over 12 ms (`zz_1` by 8 σ)",
@@ -145,6 +151,27 @@ mod tests {
     }
 
     #[test]
+    fn the_most_harmful_faults_are_named_and_the_others_counted() {
+        let gain = |number: usize| {
+            let name = format!("drive{number}");
+            limit(
+                FaultHypothesis::Gain(number),
+                &name,
+                (0.1, ""),
+                4.0 + number as f64,
+            )
+        };
+        let checks = [check(CheckKind::WrongGain, (0..5).map(gain).collect())];
+        assert_eq!(detection_limits(&checks).len(), 5);
+        assert_eq!(
+            unseen(&checks),
+            [
+                "gain of one drive: 10 % of `drive4` (`zz_1` by 8 σ), 10 % of `drive3` (`zz_1` by 7 σ), 10 % of `drive2` (`zz_1` by 6 σ), and 2 more"
+            ]
+        );
+    }
+
+    #[test]
     fn one_missing_torque_of_each_drive_is_named() {
         let torques = [
             ("left", Shape::Position),
@@ -158,7 +185,7 @@ mod tests {
         assert_eq!(
             unseen(&checks),
             [
-                "torque or force that the model lacks: 0.3 N m at `left` with the position, as a spring (`zz_1` by 4 σ), 0.3 N m at `right` with the square of the velocity, as drag (`zz_1` by 4 σ)"
+                "torque or force that the model lacks: 0.3 N m at `left` with the position, as a spring (`zz_1` by 4 σ), 0.3 N m at `right` with the square of the velocity, as drag (`zz_1` by 4 σ), and 1 more"
             ]
         );
     }

@@ -218,7 +218,8 @@ fn encoders() -> Vec<Trap> {
         .known(first(FaultKind::EncoderScale, 0.01)),
         Trap::each("encoder 1 out of centre by 0.01 rad", |run| {
             alter::position(run, 0, |q| q + 0.01 * q.sin());
-        }),
+        })
+        .known(first(FaultKind::Eccentricity, 0.01)),
         Trap::each("encoders of 12 bits", |run| {
             let step = std::f64::consts::TAU / 4096.0;
             run.positions
@@ -227,7 +228,8 @@ fn encoders() -> Vec<Trap> {
         }),
         Trap::each("backlash of 0.2 deg at encoder 1", move |run| {
             alter::backlash(run, 0, 0.2 * degree);
-        }),
+        })
+        .known(first(FaultKind::Play, 0.1 * degree)),
         Trap::each("positions in degrees", move |run| {
             run.positions.iter_mut().for_each(|q| *q /= degree);
         }),

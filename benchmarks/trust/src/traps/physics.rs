@@ -44,7 +44,7 @@ fn torque_sensing(drives: usize) -> Vec<Trap> {
     let ripple = |torque: f64, position: f64| torque * (1.0 + 0.03 * (12.0 * position).sin());
     let saturation = |drive: usize| KnownFault::torque("saturation", drive, None);
     let drift = |drive: usize| KnownFault::torque("gain-time", drive, None);
-    let waves = |drive: usize| KnownFault::torque("load-waves", drive, Some(0.03));
+    let waves = |drive: usize| KnownFault::torque("load-waves", drive, None);
     let neighbours: Vec<(usize, usize)> =
         (1..drives).flat_map(|i| [(i - 1, i), (i, i - 1)]).collect();
     let crosstalk =

@@ -11,7 +11,7 @@ use crate::assessment::{
         },
         level::{level, origin},
     },
-    detectable::{Detectable, HARMFUL},
+    detectable::{Detectable, FaultKind, HARMFUL},
     hypotheses::{FaultHypothesis, Group, Misreading, Scores},
 };
 use overact_logs::{Error, significant};
@@ -35,6 +35,8 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     };
     let mut found = tested(scores, Group::hypotheses(scores, is_geometric));
     let tests = found.len();
+    let level = level(tests);
+    let limits = detection_limits(context, scores, &found, level);
     // Friction errors at reversals repeat with each period, and the standard deviation ignores
     // that. They look like a slightly eccentric encoder, which is therefore reported only if
     // harmful.
@@ -45,9 +47,8 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     if found.is_empty() {
         return Ok(Vec::new());
     }
-    let level = level(tests);
     let Some(worst) = most_significant(&found, level) else {
-        return Ok(vec![passed_check(context, scores, &found, tests, level)]);
+        return Ok(vec![passed_check(&found, limits, tests, level)]);
     };
     let hypothesis = worst.hypothesis(scores);
     let harm = worst_harm(context, scores, &found, worst, level);
@@ -133,8 +134,7 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
         .against(worst.wald.quantile(level), origin(tests))
         .shown_by(parabola(&worst.wald, &title, axis, unit, 1.0))
         .with_harm(&harm);
-    let limits = detection_limits(context, scores, &found, level).into_iter();
-    let check = check.detecting(limits.map(|(_, limit)| limit).collect());
+    let check = check.detecting(limits);
     Ok(vec![match hypothesis {
         FaultHypothesis::Length(_) | FaultHypothesis::Scales => check,
         _ => check.of_actuator(&name),
@@ -143,23 +143,21 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
 
 /// The passed check, with its detection limits.
 fn passed_check(
-    context: &Context<'_>,
-    scores: &Scores,
     found: &[TestedHypothesis],
+    limits: Vec<Detectable>,
     tests: usize,
     level: f64,
 ) -> Check {
-    let limits = detection_limits(context, scores, found, level);
-    let visible = |of: fn(&FaultHypothesis) -> bool| -> String {
-        let own = limits.iter().filter(|(hypothesis, _)| of(hypothesis));
-        let each = own.map(|(_, one)| {
+    let visible = |kind: FaultKind| -> String {
+        let own = limits.iter().filter(|one| one.fault == kind);
+        let each = own.map(|one| {
             let size = significant(one.size, 2);
             format!("`{}` {size} {}", one.name, one.unit)
         });
         each.collect::<Vec<_>>().join(", ")
     };
-    let offsets = visible(|hypothesis| matches!(hypothesis, FaultHypothesis::Offset(_)));
-    let lengths = visible(|hypothesis| matches!(hypothesis, FaultHypothesis::Length(_)));
+    let offsets = visible(FaultKind::EncoderOffset);
+    let lengths = visible(FaultKind::Length);
     let mut words = Vec::new();
     if !offsets.is_empty() {
         words.push(format!(
@@ -172,38 +170,30 @@ fn passed_check(
         ));
     }
     let largest = found.iter().map(ratio).fold(0.0, f64::max);
-    let threshold = found
-        .first()
-        .map_or(f64::NAN, |one| one.wald.quantile(level));
+    let first = found.first();
+    let threshold = first.map_or(f64::NAN, |one| one.wald.quantile(level));
     Check::new(CheckKind::EncoderOffset, About::Model, words.join("; "))
         .measured(largest, "standard deviations")
         .against(threshold, origin(tests))
-        .detecting(limits.into_iter().map(|(_, limit)| limit).collect())
+        .detecting(limits)
 }
 
-/// Detection limit of each offset, scale and length.
+/// Detection limit of each geometric fault.
 fn detection_limits(
     context: &Context<'_>,
     scores: &Scores,
     found: &[TestedHypothesis],
     level: f64,
-) -> Vec<(FaultHypothesis, Detectable)> {
+) -> Vec<Detectable> {
     let limit = |one: &TestedHypothesis| {
         let hypothesis = one.hypothesis(scores);
         let (unit, visible) = (unit(context, hypothesis), one.wald.visible(level));
-        let limit = Detectable {
+        Detectable {
             name: name(context, hypothesis),
             ..one.detectable(context, scores, unit, visible)
-        };
-        (hypothesis, limit)
+        }
     };
-    let has_limit = |one: &&TestedHypothesis| {
-        !matches!(
-            one.hypothesis(scores),
-            FaultHypothesis::Play(_) | FaultHypothesis::Eccentric(..)
-        )
-    };
-    found.iter().filter(has_limit).map(limit).collect()
+    found.iter().map(limit).collect()
 }
 
 fn ratio(one: &TestedHypothesis) -> f64 {

@@ -74,11 +74,9 @@ pub(crate) fn check(context: &Context<'_>) -> Result<Vec<Check>, Error> {
     }])
 }
 
-/// Detection limits of the torques and forces that the model may lack.
+/// Detection limits of the harmful torques and forces that the model may lack.
 ///
-/// Of the equations of each drive and coordinate, and of the potentials, these are the most harmful
-/// one and each further one that shifts parameters which no more harmful one shifts. Waves over the
-/// position come last.
+/// The most harmful one comes first, waves over the position last.
 fn detection_limits(
     context: &Context<'_>,
     scores: &Scores,
@@ -86,7 +84,7 @@ fn detection_limits(
     level: f64,
 ) -> Vec<Detectable> {
     let info = context.model.info();
-    let mut harmful: Vec<(EquationLine, Detectable)> = Vec::new();
+    let mut harmful: Vec<Detectable> = Vec::new();
     for one in found {
         let hypothesis = one.hypothesis(scores);
         let line = EquationLine::of(hypothesis);
@@ -127,28 +125,15 @@ fn detection_limits(
             name: name.copied().unwrap_or_default().to_owned(),
             ..limit
         };
-        harmful.push((line, limit));
+        harmful.push(limit);
     }
     // A sum of waves imitates nearly any torque, so that it is the most harmful one of nearly all.
     let is_waves = |limit: &Detectable| limit.hypothesis.shape().is_some_and(Shape::is_waves);
-    harmful.sort_by(|(_, a), (_, b)| {
+    harmful.sort_by(|a, b| {
         let size = b.shift_deviations.total_cmp(&a.shift_deviations);
         is_waves(a).cmp(&is_waves(b)).then(size)
     });
-    let mut named: Vec<(EquationLine, String)> = Vec::new();
-    harmful.retain(|(line, limit)| {
-        let known = named.len();
-        for parameter in limit.parameters() {
-            if !named
-                .iter()
-                .any(|(own, name)| own == line && name == parameter)
-            {
-                named.push((*line, parameter.to_owned()));
-            }
-        }
-        named.len() > known
-    });
-    harmful.into_iter().map(|(_, limit)| limit).collect()
+    harmful
 }
 
 /// Sentence on the strongest hypothesis, which ends with its consequence.
