@@ -1,9 +1,9 @@
-//! `simulate` and `identify`: virtual experiments, logs, and the published EMPS benchmark.
+//! `simulate` and `identify`: virtual experiments and logs.
 
 mod common;
 
-use common::{Bench, number, robot, shared};
-use overact_tier::{by_tier, is_full};
+use common::{Bench, number};
+use overact_tier::by_tier;
 use serde_json::Value;
 
 /// The serial robot with a shorter experiment.
@@ -391,87 +391,6 @@ fn invalid_experiments_are_rejected_without_output() {
 }
 
 /// Full tier only; every tier tests the same digits through the library, and logs of a robot.
-#[test]
-fn emps_logs_give_the_published_digits() {
-    if !is_full() {
-        return;
-    }
-    let (Some(data), Some(pulses)) = (
-        shared("data/emps/DATA_EMPS.mat"),
-        shared("data/emps/DATA_EMPS_PULSES.mat"),
-    ) else {
-        return;
-    };
-    let bench = Bench::new();
-    let emps = robot("emps.toml");
-    let arguments = [
-        "identify",
-        &emps,
-        "--data",
-        &data,
-        "--cross-validate",
-        &pulses,
-    ];
-    let document = bench.json(&arguments);
-    // Base parameters only, by least squares and by instrumental variables from the simulated
-    // robot.
-    let estimates = document["estimates"].as_array().expect("a list");
-    let how: Vec<&Value> = estimates.iter().map(|one| &one["estimator"]).collect();
-    assert_eq!(how, ["least-squares", "instrumental-variables"]);
-    let simulated = &document["errors_in_regressor"][0]["simulated"][0];
-    let error = number(&simulated["torque_error_percent"]);
-    assert!(
-        (5.0..6.0).contains(&error),
-        "published: 5.848 %, found {error}"
-    );
-    let estimate = &estimates[0];
-    let digits = |value: &Value| format!("{:.4}", number(value));
-    let expected = [
-        ("m_1R", "95.1089", "0.1141"),
-        ("fv_1", "203.5034", "0.5631"),
-        ("fs_1", "20.3935", "0.4964"),
-        ("off_1", "-3.1648", "1.4021"),
-    ];
-    for (at, (name, value, deviation)) in expected.iter().enumerate() {
-        let parameter = &estimate["parameters"][at];
-        assert_eq!(parameter["name"], *name);
-        assert_eq!(digits(&parameter["value"]), *value);
-        assert_eq!(
-            digits(&parameter["relative_standard_deviation_percent"]),
-            *deviation
-        );
-    }
-    assert_eq!(digits(&estimate["relative_error_percent"]), "4.0834");
-    assert_eq!(digits(&estimate["condition_number"]), "25.9883");
-    assert_eq!(digits(&estimate["residual_norm"]), "108.7569");
-    assert_eq!(digits(&estimate["residual_deviation"]), "2.1843");
-    assert_eq!(
-        digits(&document["cross_validation"][0]["residual_norm"]),
-        "169.4876"
-    );
-    assert_eq!(
-        digits(&document["cross_validation"][0]["relative_error_percent"]),
-        "5.9824"
-    );
-    let text = bench.good(&arguments);
-    assert!(
-        text.contains(" 95.11 ") && text.contains("4.0834 %"),
-        "{text}"
-    );
-
-    let asymmetric = bench.json(&[&arguments[..], &["--friction", "asymmetric"]].concat());
-    let parameters = asymmetric["estimates"][0]["parameters"]
-        .as_array()
-        .expect("a list");
-    let value =
-        |name: &str| digits(&parameters.iter().find(|p| p["name"] == name).expect(name)["value"]);
-    assert_eq!(value("m_1R"), "95.1540");
-    assert_eq!(value("fv_pos_1"), "166.7061");
-    assert_eq!(value("fs_pos_1"), "20.1440");
-    assert_eq!(value("fv_neg_1"), "240.4236");
-    assert_eq!(value("fs_neg_1"), "20.6277");
-}
-
 #[test]
 fn online_replay_reports_estimates_over_time() {
     let bench = serial();

@@ -65,9 +65,10 @@ pub(crate) fn silent(context: &Context<'_>, all: &[Check]) -> Option<Check> {
         ),
     };
     let words = format!(
-        "the relative residual, {} %, is {} times the noise of the torques, {why}. Intervals cover noise only, not the bias by such an error. Look for filters of torques or positions, for play, flexible parts and other friction, or for encoders that are coarse for the motion",
+        "the relative residual, {} %, is {} times the noise of the torques, {why}. Intervals cover noise only, not the bias by such an error. {}Look for filters of torques or positions, for play, flexible parts and other friction, or for encoders that are coarse for the motion",
         significant(error, 3),
-        significant(ratio, 2)
+        significant(ratio, 2),
+        kept_transients(context)
     );
     let ratio = rest * ratio;
     let check = Check::new(CheckKind::RelativeError, About::Fit, words)
@@ -77,6 +78,26 @@ pub(crate) fn silent(context: &Context<'_>, all: &[Check]) -> Option<Check> {
             "simulated robots without faults have 1 to 1.3 times the noise",
         );
     (ratio.is_finite() && ratio > SILENT).then(|| check.with_grade(Grade::DoNotUse))
+}
+
+/// Sentence on transients of the position filter that the settings keep; empty if there are none.
+fn kept_transients(context: &Context<'_>) -> String {
+    let Some(run) = context.dataset.runs.first() else {
+        return String::new();
+    };
+    let own = context.settings;
+    let trimmed = own.clone().trimmed(run.sampling_frequency());
+    let ends = [
+        ("skip_start", "start", own.skip_start, trimmed.skip_start),
+        ("skip_end", "end", own.skip_end, trimmed.skip_end),
+    ];
+    let kept = ends.into_iter().filter(|(.., own, trimmed)| own < trimmed);
+    let sentence = |(key, end, own, trimmed): (&str, &str, usize, usize)| {
+        format!(
+            "The transient of the position filter at the {end} of each run is kept (`{key} = {own}`); set `{key} = {trimmed}` to leave it out. "
+        )
+    };
+    kept.map(sentence).collect()
 }
 
 /// Whether a failed check accounts for the residual.
