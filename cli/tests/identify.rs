@@ -293,6 +293,38 @@ fn partitions_are_ranked() {
 }
 
 #[test]
+fn the_report_names_all_parameters_that_hidden_faults_shift() {
+    let bench = serial();
+    bench.good(&["simulate", "my.toml", "-o", "log.csv"]);
+    let log = ["identify", "my.toml", "--data", "log_identification.csv"];
+    let json = bench.good(&[&log[..], &["--json", "--report", "report.html"]].concat());
+    let result: Value = serde_json::from_str(&json).expect("a JSON document");
+    let checks = result["checks"].as_array().expect("checks").iter();
+    let limits = checks
+        .filter(|check| check["passed"] == true)
+        .filter_map(|check| check["detectable"].as_array())
+        .flatten()
+        .filter(|limit| limit["also"].is_array() && number(&limit["size"]).is_finite());
+    let page = bench.read("report.html");
+    let table = page.split("All parameters that these faults shift").nth(1);
+    let table = table.and_then(|rest| rest.split("</details>").next());
+    let table = table.expect("a table");
+    let mut count = 0;
+    for limit in limits {
+        for other in limit["also"].as_array().expect("shifts") {
+            let name = other["parameter"].as_str().expect("a name");
+            let words = format!("<code>{name}</code> by {:.0} σ", number(&other["moves"]));
+            assert!(
+                number(&limit["size"]) > 1.0 || table.contains(&words),
+                "{words}"
+            );
+            count += 1;
+        }
+    }
+    assert!(count > 0, "no fault shifts several parameters");
+}
+
+#[test]
 fn invalid_logs_are_rejected_without_output() {
     let bench = serial();
     let bad = |log: &str| {

@@ -15,7 +15,7 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
     let limits = list(
         "unseen",
         "Detection limits",
-        "For each kind of fault: the sizes that nine of ten such data sets would reveal, the parameter that a fault of this size would shift most, and the number of others that it would shift by more than three standard deviations. A smaller fault shifts them in proportion:",
+        "For each kind of fault, up to three of the most harmful: the size that nine of ten such data sets would reveal, the parameter that a fault of this size would shift most, and the number of others that it would shift by more than three standard deviations. A smaller fault shifts them in proportion:",
         &identification.unseen,
     );
     let assumptions = list(

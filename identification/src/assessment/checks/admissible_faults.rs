@@ -97,17 +97,17 @@ fn of_all_drives<'a>(
     scores: &Scores,
 ) -> Vec<&'a TestedHypothesis> {
     let level = level(found.len());
-    let parts = |all: FaultHypothesis| {
-        let is_part = move |one: &&TestedHypothesis| one.hypothesis(scores).is_joined_by(all);
-        found.iter().filter(is_part)
+    let is_part =
+        |one: &TestedHypothesis, all: FaultHypothesis| one.hypothesis(scores).is_joined_by(all);
+    let is_likely = |all: FaultHypothesis| {
+        let parts = found.iter().filter(|one| is_part(one, all));
+        let significant = parts.filter(|one| one.wald.probability < level);
+        significant.count() >= 2 && admissible.iter().any(|one| is_part(one, all))
     };
-    let is_likely = |all: &FaultHypothesis| {
-        let significant = parts(*all).filter(|one| one.wald.probability < level);
-        let is_admissible = |one: &&TestedHypothesis| one.hypothesis(scores).is_joined_by(*all);
-        significant.count() >= 2 && admissible.iter().any(|one| is_admissible(&one))
-    };
-    let likely = scores.hypotheses.iter().filter(|all| is_likely(all));
-    likely.flat_map(|all| parts(*all)).collect()
+    let all = scores.hypotheses.iter().copied();
+    let likely: Vec<FaultHypothesis> = all.filter(|all| is_likely(*all)).collect();
+    let is_wanted = |one: &&TestedHypothesis| likely.iter().any(|all| is_part(one, *all));
+    found.iter().filter(is_wanted).collect()
 }
 
 /// Whether the columns of a fault describe its whole effect.
