@@ -156,6 +156,29 @@ impl FaultResidual<'_> {
         all.smallest_residual(&selected) / f64::from(lines.max(1)).sqrt()
     }
 
+    /// Squared norm of the inputs of each line, without a correction.
+    fn squared_inputs(&self) -> Vec<f64> {
+        let (p, share) = (self.columns.base.columns.len(), self.share(None));
+        let lines = self.factors.first().map_or(0, Vec::len);
+        let of_line = |line: usize| {
+            let factors = self.factors.iter().map(|factors| factors[line].matrix());
+            let sums = factors.map(|r| (r.columns(p, share.len()) * &share).norm_squared());
+            sums.sum()
+        };
+        (0..lines).map(of_line).collect()
+    }
+
+    /// Whether the inputs after a correction of the positions are so large that the residual is not
+    /// smaller than with those of the `logged` positions, although it is relative to the inputs.
+    ///
+    /// Positions near a singularity project the torques of a few samples on large inputs, which any
+    /// model explains.
+    pub(super) fn is_inflated(&self, logged: &Self) -> bool {
+        let largest = |inputs: Vec<f64>| inputs.into_iter().fold(0.0, f64::max).sqrt();
+        let inflation = largest(self.squared_inputs()) / largest(logged.squared_inputs());
+        inflation * self.error(None) > logged.error(None)
+    }
+
     /// Symbol of a base column.
     fn symbol(&self, place: usize) -> Option<StandardParameter> {
         let Columns { columns, base, .. } = self.columns;

@@ -55,7 +55,7 @@ pub(crate) fn explanation(
         columns.fault_residual(model, runs, settings, EquationOptions::ONE_BY_ONE)?;
     let before = fault_residual.error(None);
     let of_one = of_one(model, runs, &fault_residual, before);
-    Ok(of_one.or_else(|| of_all(model, &columns, runs, settings, before)))
+    Ok(of_one.or_else(|| of_all(model, &columns, runs, settings, &fault_residual)))
 }
 
 /// The check of dry friction that the model lacks, or of a load cell that drifts, if that explains
@@ -108,7 +108,7 @@ pub(crate) fn missing_torques(
 
 /// Relative residuals with the positions as they are, and after correcting a position fault.
 ///
-/// `None` if the correction leaves the workspace or a log cannot be read.
+/// `None` if the correction leaves the workspace, inflates the inputs, or a log cannot be read.
 pub(super) fn errors_with(
     fault: positions::Fault,
     model: &dyn Model,
@@ -120,12 +120,12 @@ pub(super) fn errors_with(
         .iter()
         .map(|log| RunLevelFault::Positions(fault).repaired(model, log));
     let repaired: Vec<Log> = repaired.collect::<Result<_, _>>().ok()?;
-    let error = |runs: &[Log]| {
-        let fault_residual =
-            columns.fault_residual(model, runs, settings, EquationOptions::TOGETHER);
-        Some(fault_residual.ok()?.error(None))
+    let residual = |runs: &[Log]| {
+        let options = EquationOptions::TOGETHER;
+        columns.fault_residual(model, runs, settings, options).ok()
     };
-    Some((error(runs)?, error(&repaired)?))
+    let (logged, repaired) = (residual(runs)?, residual(&repaired)?);
+    (!repaired.is_inflated(&logged)).then(|| (logged.error(None), repaired.error(None)))
 }
 
 /// States the evidence for a fault.
@@ -213,8 +213,9 @@ fn of_all(
     columns: &Columns,
     runs: &[Log],
     settings: &Settings,
-    before: f64,
+    logged: &FaultResidual<'_>,
 ) -> Option<Check> {
+    let before = logged.error(None);
     let faults = RunLevelFault::all(model)
         .into_par_iter()
         .filter_map(|fault| {
@@ -226,8 +227,9 @@ fn of_all(
                 RunLevelFault::Weightless => EquationOptions::TOGETHER.without_gravity(1.0),
                 _ => EquationOptions::TOGETHER,
             };
-            let fault_residual = columns.fault_residual(model, &runs.ok()?, settings, options);
-            Some((fault, fault_residual.ok()?.error(None)))
+            let repaired = columns.fault_residual(model, &runs.ok()?, settings, options);
+            let repaired = repaired.ok()?;
+            (!repaired.is_inflated(logged)).then(|| (fault, repaired.error(None)))
         });
     let faults: Vec<(RunLevelFault, f64)> = faults.collect();
     let explains = |(fault, after): &(RunLevelFault, f64)| {
